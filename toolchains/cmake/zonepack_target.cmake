@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+# What every target of the project shares: warnings, include root, bit-exact arithmetic.
+
+find_package(Threads REQUIRED)
+
+# zonepack_library(NAME DIR...): a static library of every .cpp below the given folders.
+function(zonepack_library name)
+  set(sources)
+  foreach(dir ${ARGN})
+    file(GLOB_RECURSE found CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${dir}/*.cpp)
+    list(APPEND sources ${found})
+  endforeach()
+  list(SORT sources)
+  if(NOT sources)
+    file(WRITE ${CMAKE_BINARY_DIR}/${name}_empty.cpp "")
+    set(sources ${CMAKE_BINARY_DIR}/${name}_empty.cpp)
+  endif()
+  add_library(zonepack_${name} STATIC ${sources})
+  add_library(zonepack::${name} ALIAS zonepack_${name})
+  set_target_properties(zonepack_${name} PROPERTIES EXPORT_NAME ${name})
+  zonepack_settings(zonepack_${name})
+endfunction()
+
+# The same flags everywhere, so that code which decides gives the same bits on every compiler.
+function(zonepack_settings target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off
+                         $<$<BOOL:${ZONEPACK_WERROR}>:-Werror>)
+  target_compile_definitions(${target} PRIVATE EIGEN_DONT_VECTORIZE)
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                             $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>
+                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/zonepack>)
+endfunction()
