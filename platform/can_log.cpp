@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "platform/can_log.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+namespace zonepack {
+namespace {
+
+constexpr std::int64_t kStray_ns = 3600LL * 1'000'000'000;
+constexpr std::size_t kExcerpt = 60;
+
+}  // namespace
+
+CanLogReader::CanLogReader(std::string path, std::string interface)
+    : path_(std::move(path)), interface_(std::move(interface)) {}
+
+CanLogReader::~CanLogReader() = default;
+
+Result<void> CanLogReader::open() {
+  file_.reset(std::fopen(path_.c_str(), "rb"));
+  if (!file_) return {errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kIo, errno};
+  refill();
+  if (count_ == 0 && summary_.read_error != 0) return {ErrorCode::kIo, summary_.read_error};
+  if (count_ == 0) return {ErrorCode::kBadStructure, static_cast<std::int64_t>(summary_.lines)};
+  if (relative_ && stamps_are_differences()) return ErrorCode::kBadValue;
+  return {};
+}
+
+std::string CanLogReader::explain(const Error& error) const {
+  switch (error.code) {
+    case ErrorCode::kNotFound:
+      return path_ + ": no such file; expected a candump log";
+    case ErrorCode::kIo:
+      return path_ + ": cannot be read: " + std::strerror(static_cast<int>(error.detail));
+    case ErrorCode::kBadValue:
+      return path_ +
+             ": the stamps are time differences (candump -td); record with candump -l, -L, -ta or "
+             "-tz";
+    default:
+      break;
+  }
+  std::string message =
+      path_ + ": no CAN frame in " + std::to_string(summary_.lines) +
+      " lines; expected lines such as (1718021600.001102) can0 311#000040DB00015BCF";
+  if (summary_.other_interfaces > 0) {
+    message += "; " + std::to_string(summary_.other_interfaces) +
+               " frames are of other interfaces than " + interface_;
+  }
+  if (!summary_.faults.empty()) {
+    message += "; line " + std::to_string(summary_.faults.front().line) + ": " +
+               summary_.faults.front().what;
+  }
+  return message;
+}
+
+void CanLogReader::note(std::uint64_t line, std::string_view what, std::string_view text) {
+  if (summary_.faults.size() == kMostFaults) return;
+  std::string message(what);
+  message += ": \"";
+  for (const char c : text.substr(0, kExcerpt)) message += c >= ' ' && c <= '~' ? c : '?';
+  message += text.size() > kExcerpt ? "...\"" : "\"";
+  summary_.faults.push_back({line, std::move(message)});
+}
+
+// False at the end of the file. What is longer than the buffer is cut, which breaks the line.
+bool CanLogReader::read_line(std::string_view& line) {
+  std::size_t size = 0;
+  int c = 0;
+  while ((c = std::getc(file_.get())) != EOF && c != '\n') {
+    if (size < line_.size()) line_[size++] = static_cast<char>(c);
+  }
+  if (c == EOF && std::ferror(file_.get()) != 0) summary_.read_error = errno;
+  if (c == EOF && size == 0) return false;
+  line = {line_.data(), size};
+  ++summary_.lines;
+  return true;
+}
+
+std::optional<CanLogReader::Item> CanLogReader::read_frame() {
+  std::string_view text;
+  while (read_line(text)) {
+    CanLogLine line = parse_can_log_line(text);
+    if (text.size() == kLongestLine) {
+      line.kind = CanLogLine::Kind::kBroken;
+      line.fault = "line of over 1000 characters";
+    }
+    if (line.kind == CanLogLine::Kind::kDrop) summary_.dropped += line.dropped;
+    if (line.kind == CanLogLine::Kind::kBroken) {
+      ++summary_.broken_lines;
+      note(summary_.lines, line.fault, text);
+    }
+    if (line.kind != CanLogLine::Kind::kFrame) continue;
+    if (!interface_.empty() && line.interface != interface_) {
+      ++summary_.other_interfaces;
+      continue;
+    }
+    relative_ = relative_ || !line.absolute_stamp;
+    return Item{line.frame, summary_.dropped, summary_.lines};
+  }
+  return std::nullopt;
+}
+
+void CanLogReader::refill() {
+  while (!end_ && count_ < kAhead) {
+    const std::optional<Item> item = read_frame();
+    end_ = !item;
+    if (item) ahead_[(first_ + count_++) % kAhead] = *item;
+  }
+}
+
+// candump -tz counts up from zero; -td jumps up and down, as far as frames do not come in step.
+bool CanLogReader::stamps_are_differences() const noexcept {
+  std::size_t back = 0;
+  for (std::size_t i = 1; i < count_; ++i) {
+    if (ahead_[i].frame.stamp_ns < ahead_[i - 1].frame.stamp_ns) ++back;
+  }
+  return count_ >= 8 && back * 5 >= count_;
+}
+
+bool CanLogReader::is_stray(const Item& item) const noexcept {
+  if (count_ < 2 || (given_ && item.frame.stamp_ns - latest_ns_ <= kStray_ns)) return false;
+  return item.frame.stamp_ns - ahead_[(first_ + 1) % kAhead].frame.stamp_ns > kStray_ns;
+}
+
+std::optional<CanFrame> CanLogReader::next() noexcept {
+  while (count_ > 0) {
+    const Item item = ahead_[first_];
+    const bool stray = is_stray(item);
+    first_ = (first_ + 1) % kAhead;
+    --count_;
+    if (count_ < 2) refill();
+    if (stray) {
+      ++summary_.stray_stamps;
+      note(item.line, "stamp over an hour after both neighbours", "");
+      continue;
+    }
+    if (given_ && item.frame.stamp_ns < latest_ns_) ++summary_.unsorted_stamps;
+    latest_ns_ = given_ ? std::max(latest_ns_, item.frame.stamp_ns) : item.frame.stamp_ns;
+    given_ = true;
+    dropped_before_ = item.dropped;
+    ++summary_.frames;
+    if (item.frame.error) ++summary_.error_frames;
+    return item.frame;
+  }
+  return std::nullopt;
+}
+
+}  // namespace zonepack

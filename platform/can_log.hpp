@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "platform/base/result.hpp"
+#include "platform/can_bus.hpp"
+#include "platform/can_log_line.hpp"
+#include "platform/sim/sim_can_bus.hpp"
+
+namespace zonepack {
+
+// What was met in a log so far. Lines count from 1.
+struct CanLogSummary {
+  struct Fault {
+    std::uint64_t line = 0;
+    std::string what;  // the reason and the start of the line
+  };
+  std::uint64_t lines = 0;
+  std::uint64_t frames = 0;  // given out or about to be
+  std::uint64_t broken_lines = 0;
+  std::uint64_t stray_stamps = 0;     // frames left out: stamp far in the future of both neighbours
+  std::uint64_t unsorted_stamps = 0;  // frames with a stamp before the latest one so far
+  std::uint64_t other_interfaces = 0;  // frames the interface filter left out
+  std::uint64_t error_frames = 0;
+  std::uint64_t dropped = 0;  // as DROPCOUNT lines tell
+  int read_error = 0;         // errno that ended the file early; 0: read to its end
+  std::vector<Fault> faults;  // the first kMostFaults of broken lines and stray stamps
+};
+
+// Reads a candump recording (can_log_line.hpp tells which) from front to back in bounded memory.
+//
+// A broken line is counted, noted with its number and skipped; only a file without one valid frame
+// is an error. The order of the file is the order of arrival: frames whose stamp steps back are
+// counted and given out as they are (SimCanBus tells when they arrive), except a single frame
+// stamped over an hour after both neighbours, which is counted and left out.
+class CanLogReader final : public CanFrameSource {
+ public:
+  static constexpr std::size_t kMostFaults = 20;
+
+  // interface: "can0" gives only that bus's frames; empty gives all.
+  explicit CanLogReader(std::string path, std::string interface = {});
+  ~CanLogReader() override;
+
+  // Opens the file and reads ahead. Errors: kNotFound, kIo (errno); kBadStructure: no valid frame
+  // in the whole file; kBadValue: stamps are time differences (candump -td), useless for a pose.
+  Result<void> open();
+
+  // The message for open()'s error: file, line, what was expected, what to do.
+  std::string explain(const Error& error) const;
+
+  // The next frame; nullopt at the end of the file.
+  std::optional<CanFrame> next() noexcept override;
+
+  // DROPCOUNT losses before the frames given out so far.
+  std::uint64_t dropped() const noexcept override { return dropped_before_; }
+
+  const CanLogSummary& summary() const noexcept { return summary_; }
+
+ private:
+  struct Item {
+    CanFrame frame;
+    std::uint64_t dropped = 0;
+    std::uint64_t line = 0;
+  };
+  struct Closer {
+    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
+  };
+  static constexpr std::size_t kAhead = 64;
+  static constexpr std::size_t kLongestLine = 1024;
+
+  bool read_line(std::string_view& line);
+  std::optional<Item> read_frame();
+  void refill();
+  void note(std::uint64_t line, std::string_view what, std::string_view text);
+  bool stamps_are_differences() const noexcept;
+  bool is_stray(const Item& item) const noexcept;
+
+  std::string path_;
+  std::string interface_;
+  std::unique_ptr<std::FILE, Closer> file_;
+  std::array<char, kLongestLine> line_{};
+  std::array<Item, kAhead> ahead_{};  // a ring: frames read but not given out
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
+  bool end_ = false;
+  bool relative_ = false;
+  bool given_ = false;
+  std::int64_t latest_ns_ = 0;  // largest stamp given out
+  std::uint64_t dropped_before_ = 0;
+  CanLogSummary summary_;
+};
+
+}  // namespace zonepack
