@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "platform/base/byte_count.hpp"
+
+namespace zonepack {
+
+// A slot's place in the arena.
+using SlotIndex = std::uint32_t;
+inline constexpr SlotIndex kNoSlot = 0xFFFFFFFFu;
+
+// Slots linked by SlotPool's table, in the order in which they are filled. A plain value: whoever
+// holds it owns the slots; the count never differs from the number of links between head and tail.
+struct SlotChain {
+  SlotIndex head = kNoSlot;
+  SlotIndex tail = kNoSlot;
+  std::uint32_t count = 0;
+};
+
+// The free slots of an arena, and the links of all chains: one u32 per slot.
+//
+// Invariant: every slot is on the free list or in exactly one chain that was taken and not given
+// back. Oldest first: a slot given back is reused last, so that a slow reader has the longest time
+// to notice. Real-time: no allocation after construction; take_one and give_back are O(1). Threads:
+// owned by the thread that fills slots (the loader's); control passes chains, never links.
+class SlotPool {
+ public:
+  explicit SlotPool(std::uint32_t slots);
+
+  // Moves one free slot to the end of `chain`; false when none is free.
+  bool take_one(SlotChain& chain) noexcept;
+
+  // Moves `count` free slots to the end of `chain`, or none when fewer are free. O(count).
+  bool take(std::uint32_t count, SlotChain& chain) noexcept;
+
+  // Appends the whole chain to the free list and leaves it empty.
+  void give_back(SlotChain& chain) noexcept;
+
+  // The slot after `slot` in its chain; kNoSlot after the last.
+  SlotIndex next(SlotIndex slot) const noexcept { return next_[slot]; }
+
+  std::uint32_t free_count() const noexcept { return free_.count; }
+  std::uint32_t slot_count() const noexcept { return static_cast<std::uint32_t>(next_.size()); }
+
+  // What a pool of this many slots takes from the budget beside the slots themselves.
+  static ByteCount table_bytes(std::uint32_t slots) noexcept { return ByteCount{4} * slots; }
+
+ private:
+  std::vector<SlotIndex> next_;
+  SlotChain free_;
+};
+
+}  // namespace zonepack
