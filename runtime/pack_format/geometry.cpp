@@ -38,8 +38,7 @@ Point2 nearest_point(const Segment2& segment, Point2 point) noexcept {
   const double dy = segment.q.y_m - segment.p.y_m;
   const double length2 = dx * dx + dy * dy;
   if (length2 == 0) return segment.p;
-  const double t =
-      ((point.x_m - segment.p.x_m) * dx + (point.y_m - segment.p.y_m) * dy) / length2;
+  const double t = ((point.x_m - segment.p.x_m) * dx + (point.y_m - segment.p.y_m) * dy) / length2;
   const double s = std::clamp(t, 0.0, 1.0);
   return {segment.p.x_m + s * dx, segment.p.y_m + s * dy};
 }
@@ -56,9 +55,8 @@ double distance_m(const Segment2& segment, Point2 point) noexcept {
 
 double distance_to_border_m(const Polygon& polygon, Point2 point) noexcept {
   double least = std::numeric_limits<double>::infinity();
-  for_each_edge(polygon, [&](const Segment2& edge) {
-    least = std::min(least, distance_m(edge, point));
-  });
+  for_each_edge(polygon,
+                [&](const Segment2& edge) { least = std::min(least, distance_m(edge, point)); });
   return least;
 }
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-// Plane geometry of zones, the same for the packer and the robot, so that a point is in the same zone
-// on both. Metres in the map frame. Only + - * / sqrt: the same bits on every machine.
+// Plane geometry of zones, the same for the packer and the robot, so that a point is in the same
+// zone on both. Metres in the map frame. Only + - * / sqrt: the same bits on every machine.
 namespace zonepack {
 
 struct Point2 {

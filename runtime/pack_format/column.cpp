@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/pack_format/column.hpp"
+
+namespace zonepack {
+namespace {
+
+std::uint64_t packed_bytes(std::uint64_t rows, unsigned bits) noexcept {
+  return (rows * bits + 7) / 8;
+}
+
+std::uint32_t bits_from_ordered(fb::Field field, std::uint32_t ordered) noexcept {
+  return is_integer(field) ? ordered ^ 0x80000000u : float_from_ordered(ordered);
+}
+
+bool blocks_are_sound(ByteSpan bytes, std::uint32_t rows) noexcept {
+  const std::uint64_t blocks = (std::uint64_t{rows} + kBlockRows - 1) / kBlockRows;
+  const std::uint64_t headers = blocks * sizeof(BlockHeader);
+  if (headers > bytes.size()) return false;
+  std::uint64_t words = 0;
+  for (std::uint64_t i = 0; i < blocks; ++i) {
+    BlockHeader header;
+    std::memcpy(&header, bytes.data() + i * sizeof header, sizeof header);
+    if (header.bits > 32 || header.reserved != 0 || header.offset != words) return false;
+    words += header.bits;  // 32 rows of b bits are b words
+  }
+  return headers + words * 4 == bytes.size();
+}
+
+bool lattice_is_sound(ByteSpan bytes, std::uint32_t rows) noexcept {
+  LatticeHeader header;
+  if (bytes.size() < sizeof header) return false;
+  std::memcpy(&header, bytes.data(), sizeof header);
+  const std::uint64_t cells = std::uint64_t{header.width} * header.height;
+  constexpr std::int32_t kFar = 1 << 24;  // grid indices are exact in float32 below this
+  return header.width < kFar && header.height < kFar && header.first_x > -kFar &&
+         header.first_x < kFar && header.first_y > -kFar && header.first_y < kFar &&
+         cells >= rows && bytes.size() - sizeof header == (cells + 7) / 8;
+}
+
+std::uint64_t ones(ByteSpan bits) noexcept {
+  std::uint64_t count = 0;
+  for (const std::byte byte : bits) {
+    count += static_cast<unsigned>(std::popcount(std::to_integer<std::uint8_t>(byte)));
+  }
+  return count;
+}
+
+}  // namespace
+
+std::uint32_t ColumnView::bits_at(std::uint32_t row) const noexcept {
+  switch (column_->codec()) {
+    case fb::ColumnCodec::Raw: {
+      std::uint32_t bits;
+      std::memcpy(&bits, data_ + std::size_t{row} * 4, sizeof bits);
+      return bits;
+    }
+    case fb::ColumnCodec::Constant:
+      return static_cast<std::uint32_t>(column_->base());
+    case fb::ColumnCodec::Packed:
+      return bits_from_ordered(field(), static_cast<std::uint32_t>(column_->base()) +
+                                            packed_at(data_, row, column_->bits()));
+    case fb::ColumnCodec::Scaled: {
+      const auto value = static_cast<std::int64_t>(column_->base()) +
+                         static_cast<std::int64_t>(packed_at(data_, row, column_->bits()));
+      const float scale = 1.0F / static_cast<float>(1u << (column_->param() & 15));
+      return std::bit_cast<std::uint32_t>(static_cast<float>(value) * scale);
+    }
+    case fb::ColumnCodec::Blocks: {
+      BlockHeader header;
+      std::memcpy(&header, data_ + std::size_t{row / kBlockRows} * sizeof header, sizeof header);
+      const std::size_t blocks = (std::size_t{rows_} + kBlockRows - 1) / kBlockRows;
+      const std::byte* const bits = data_ + blocks * sizeof header + std::size_t{header.offset} * 4;
+      return bits_from_ordered(field(),
+                               header.base + packed_at(bits, row % kBlockRows, header.bits));
+    }
+    case fb::ColumnCodec::Lattice:
+    case fb::ColumnCodec::Subset:
+      break;
+  }
+  return 0;
+}
+
+bool column_is_sound(const fb::Column& column, ByteSpan bytes, std::uint32_t rows) noexcept {
+  if (bytes.size() < kColumnPadding) return false;
+  const std::uint64_t room = bytes.size() - kColumnPadding;
+  if (column.offset() > room || column.size() > room - column.offset()) return false;
+  const ByteSpan own = bytes.subspan(column.offset(), column.size());
+  switch (column.codec()) {
+    case fb::ColumnCodec::Raw:
+      return std::uint64_t{rows} * column.param() == column.size();
+    case fb::ColumnCodec::Constant:
+      return column.size() == 0;
+    case fb::ColumnCodec::Packed:
+      return column.bits() <= 32 && packed_bytes(rows, column.bits()) == column.size();
+    case fb::ColumnCodec::Scaled:
+      return column.bits() <= 32 && column.param() <= 15 &&
+             packed_bytes(rows, column.bits()) == column.size();
+    case fb::ColumnCodec::Blocks:
+      return blocks_are_sound(own, rows);
+    case fb::ColumnCodec::Lattice:
+      return lattice_is_sound(own, rows);
+    case fb::ColumnCodec::Subset: {
+      const std::uint64_t span = column.base() >> 32;
+      return span >= rows && column.size() == (span + 7) / 8;
+    }
+  }
+  return false;
+}
+
+bool column_is_exact(const ColumnView& column) noexcept {
+  switch (column.codec()) {
+    case fb::ColumnCodec::Lattice:
+      return ones(column.bytes().subspan(sizeof(LatticeHeader))) == column.rows();
+    case fb::ColumnCodec::Subset:
+      return ones(column.bytes()) == column.rows();
+    default:
+      return true;
+  }
+}
+
+}  // namespace zonepack

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "platform/base/result.hpp"
+#include "runtime/pack_format/checksum.hpp"
+#include "runtime/pack_format/chunk_view.hpp"
+#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/ids.hpp"
+#include "runtime/pack_format/manifest_generated.h"
+#include "runtime/pack_format/pack_file.hpp"
+
+// The frame of the manifest: header, one FlatBuffer, tail with the digest of all before it.
+namespace zonepack {
+
+inline constexpr std::string_view kManifestName = "manifest.zpm";
+inline constexpr std::uint16_t kManifestMajor = 1;
+inline constexpr std::uint16_t kManifestMinor = 0;
+
+inline constexpr Magic kManifestMagic = {0x89, 'Z', 'P', 'M', '\r', '\n', 0x1A, '\n'};
+inline constexpr Magic kManifestEndMagic = {'\n', 0x1A, '\n', '\r', 'M', 'P', 'Z', 0x89};
+
+struct ManifestHeader {
+  Magic magic = kManifestMagic;
+  std::uint16_t major = kManifestMajor;
+  std::uint16_t minor = kManifestMinor;
+  std::uint32_t size = 0;  // of the FlatBuffer that follows
+};
+static_assert(sizeof(ManifestHeader) == 16);
+
+struct ManifestTail {
+  Digest32 digest{};  // BLAKE2b-256 of the header and the FlatBuffer
+  Magic magic = kManifestEndMagic;
+};
+static_assert(sizeof(ManifestTail) == 40);
+
+// Checks a whole manifest file and everything that its readers rely on: digest, structure, names
+// (present, unique, sorted, within limits), polygons, portals between known zones, slot tables,
+// file names without a path. `file` must be aligned to 8. The result points into `file`.
+Result<const fb::Manifest*> check_manifest(ByteSpan file) noexcept;
+
+// The digest at the end of a checked manifest file: names the version of the map.
+Digest32 manifest_digest(ByteSpan file) noexcept;
+
+Polygon polygon_of(const fb::Zone& zone);
+
+// zone.slots() holds one count for every set of packed kinds other than the core: the bits of
+// `payload_mask` without bit 0, squeezed together, are its index.
+std::uint32_t slot_table_index(PayloadMask wanted, PayloadMask packed) noexcept;
+
+// Slots that the zone charges when these kinds are loaded (kinds that were not packed cost
+// nothing).
+std::uint32_t zone_slots(const fb::Manifest& manifest, const fb::Zone& zone,
+                         PayloadMask wanted) noexcept;
+
+}  // namespace zonepack

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/pack_format/zone_view.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace zonepack {
+namespace {
+
+auto table_key(const RecordView& r) { return std::tuple(r.signature(), r.part(), r.ordinal()); }
+
+bool rows_are_complete(std::span<const RecordView> records) {
+  std::uint32_t next = 0;
+  for (const RecordView& record : records) {
+    if (record.first_row() != next || record.total_rows() != records.front().total_rows()) {
+      return false;
+    }
+    next += record.rows();
+  }
+  return next == records.front().total_rows();
+}
+
+}  // namespace
+
+Result<ZoneView> ZoneView::make(std::span<const ChunkRef> chunks) {
+  ZoneView view;
+  std::vector<std::pair<std::uint32_t, Core>> cores;
+  for (const ChunkRef& ref : chunks) {
+    if (ref.kind == fb::PayloadKind::Core) {
+      const fb::CoreChunk* const chunk = fb::GetCoreChunk(ref.bytes.data());
+      std::uint32_t ordinal = chunk->first_signature();
+      bool first = true;
+      for (const fb::Signature* signature : *chunk->signatures()) {
+        if (!first && !signature->continued()) ++ordinal;
+        first = false;
+        cores.push_back({ordinal, {chunk, signature, {}}});
+      }
+    } else {
+      const fb::BulkChunk* const chunk = fb::GetBulkChunk(ref.bytes.data());
+      for (std::uint32_t i = 0; i < chunk->records()->size(); ++i) {
+        view.records_.emplace_back(*chunk, i);
+      }
+    }
+  }
+  std::stable_sort(cores.begin(), cores.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.first, a.second.signature->continued()) <
+           std::pair(b.first, b.second.signature->continued());
+  });
+  for (auto& [ordinal, core] : cores) {
+    if (core.signature->continued()) {
+      if (view.core_.empty() || ordinal + 1 != view.core_.size()) {
+        return {ErrorCode::kMismatch, ordinal};
+      }
+      view.core_.back().more_links.push_back(core.signature);
+      continue;
+    }
+    if (ordinal != view.core_.size() ||
+        (ordinal > 0 && view.core_.back().signature->id() >= core.signature->id())) {
+      return {ErrorCode::kMismatch, ordinal};
+    }
+    view.core_.push_back(std::move(core));
+  }
+  std::stable_sort(view.records_.begin(), view.records_.end(),
+                   [](const RecordView& a, const RecordView& b) {
+                     return std::tuple(table_key(a), a.first_row(), a.rows()) <
+                            std::tuple(table_key(b), b.first_row(), b.rows());
+                   });
+  const std::span<const RecordView> all(view.records_);
+  for (std::size_t begin = 0; begin < all.size();) {
+    std::size_t end = begin + 1;
+    while (end < all.size() && table_key(all[end]) == table_key(all[begin])) ++end;
+    const auto records = all.subspan(begin, end - begin);
+    if (records[0].signature() >= view.size() || !rows_are_complete(records)) {
+      return {ErrorCode::kMismatch, records[0].signature()};
+    }
+    while (view.first_table_.size() <= records[0].signature()) {
+      view.first_table_.push_back(view.tables_.size());
+    }
+    view.tables_.emplace_back(records);
+    begin = end;
+  }
+  while (view.first_table_.size() <= view.core_.size()) {
+    view.first_table_.push_back(view.tables_.size());
+  }
+  return view;
+}
+
+const TableView* ZoneView::table(std::uint32_t ordinal, fb::Part part) const noexcept {
+  for (const TableView& table : tables(ordinal)) {
+    if (table.part() == part) return &table;
+  }
+  return nullptr;
+}
+
+}  // namespace zonepack

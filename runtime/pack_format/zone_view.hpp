@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "platform/base/result.hpp"
+#include "runtime/pack_format/chunk_view.hpp"
+
+namespace zonepack {
+
+// A decoded, checked chunk and where it stands.
+struct ChunkRef {
+  fb::PayloadKind kind;
+  ByteSpan bytes;
+};
+
+// One table of a signature (its features, its scan …) across the records that hold its rows.
+class TableView {
+ public:
+  explicit TableView(std::span<const RecordView> records) : records_(records) {}
+  std::span<const RecordView> records() const noexcept { return records_; }
+  fb::Part part() const noexcept { return records_.front().part(); }
+  std::uint16_t ordinal() const noexcept { return records_.front().ordinal(); }
+  std::uint32_t total_rows() const noexcept { return records_.front().total_rows(); }
+  // Attributes stand in the first record.
+  ColumnView attribute(fb::Field field) const noexcept { return records_.front().column(field); }
+
+ private:
+  std::span<const RecordView> records_;
+};
+
+// The signatures of one zone as its decoded chunks hold them, read in place: no value is copied.
+// Ownership: refers to the chunks' bytes, which must outlive the view. Built by a reader
+// (allocates); then immutable. Ordinals count a zone's signatures from 0 in the order of their ids.
+class ZoneView {
+ public:
+  // Refuses tables whose records leave out, repeat or contradict rows (kMismatch; detail: the
+  // ordinal), signatures without a core record, and ids out of order.
+  static Result<ZoneView> make(std::span<const ChunkRef> chunks);
+
+  std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(core_.size()); }
+
+  struct Core {
+    const fb::CoreChunk* chunk;
+    const fb::Signature* signature;
+    std::vector<const fb::Signature*> more_links;  // entries that continue it
+  };
+  const Core& core(std::uint32_t ordinal) const noexcept { return core_[ordinal]; }
+
+  // All tables of a signature, by part, then ordinal.
+  std::span<const TableView> tables(std::uint32_t ordinal) const noexcept {
+    return {tables_.data() + first_table_[ordinal],
+            first_table_[ordinal + 1] - first_table_[ordinal]};
+  }
+  const TableView* table(std::uint32_t ordinal, fb::Part part) const noexcept;
+
+ private:
+  std::vector<Core> core_;
+  std::vector<RecordView> records_;  // by signature, part, ordinal, first row
+  std::vector<TableView> tables_;
+  std::vector<std::size_t> first_table_;  // size() + 1
+};
+
+}  // namespace zonepack
