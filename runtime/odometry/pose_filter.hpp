@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "runtime/odometry/pose.hpp"
+#include "runtime/odometry/se2.hpp"
+#include "runtime/odometry/wheel_odometry.hpp"
+
+namespace zonepack {
+
+// An absolute fix from a localizer: base_link in the map at `stamp_ns`, known at `received_ns`.
+struct PoseCorrection {
+  std::int64_t stamp_ns = 0;
+  std::int64_t received_ns = 0;
+  Pose2 T_map_base;
+  double sigma_x_m = 0;
+  double sigma_y_m = 0;
+  double sigma_yaw_rad = 0;
+};
+
+// What became of a fix.
+enum class CorrectionVerdict : std::uint8_t {
+  kUsed,           // fused into the trusted pose
+  kHypothesis,     // kept as one of the places where the robot may be
+  kTrusted,        // agreed with an earlier fix: the pose is trusted from here on
+  kReinitialised,  // the last of a run of rejected fixes that agree: the pose was moved to them
+  kOutlier,        // refused by the gate
+  kTooOld,         // from before the history
+  kFromFuture,     // stamped after now
+  kInvalid,        // not finite, or a sigma that is not positive
+};
+const char* to_string(CorrectionVerdict verdict) noexcept;
+
+// True for the first four.
+bool is_used(CorrectionVerdict verdict) noexcept;
+
+struct PoseFilterSettings {
+  double gate_chi2 = 16.27;      // squared Mahalanobis distance; 3 dof, 99.9 %
+  double history_s = 5;          // how late a fix may come
+  double history_step_s = 0.02;  // shorter odometry steps share an entry of the history
+  double future_tolerance_s = 0.05;
+  double min_sigma_m = 0.005;  // a fix is never believed to be better than this
+  double min_sigma_rad = 0.001;
+  std::uint32_t reinit_fixes = 3;  // agreeing rejected fixes that move a trusted pose
+  double start_sigma_m = 0.5;      // of a start pose that was given or restored
+  double start_sigma_rad = 0.2;
+  double drift_sigma_m_per_sqrt_s = 0.3;  // growth while odometry is stale
+  double drift_sigma_rad_per_sqrt_s = 0.3;
+};
+
+struct PoseFilterCounters {
+  std::uint64_t used = 0;      // fixes with a verdict that is_used()
+  std::uint64_t rejected = 0;  // all others; of these:
+  std::uint64_t outliers = 0, too_old = 0, from_future = 0, invalid = 0;
+  std::uint64_t reinitialised = 0;
+};
+
+// Extended Kalman filter on SE(2): odometry increments, and absolute fixes that come late and are
+// sometimes wrong.
+//
+// A fix acts at its stamp: the history keeps every increment, every state and every fix that was
+// used, and replays them from there, so the result is what it would be had nothing come late.
+// Before two fixes have agreed through odometry nothing is trusted, and each fix is a hypothesis of
+// its own. Once trusted, fixes outside the gate are refused; when reinit_fixes of them agree with
+// each other, with none accepted in between, the filter moves there: it cannot be locked out.
+//
+// Real-time: all memory is taken in the constructor. predict() is O(1); correct() goes through the
+// history at most kMaxHypotheses + 1 times (250 entries with the default settings).   Threads: one.
+// Bit-exact: see det_math.hpp.
+class PoseFilter {
+ public:
+  explicit PoseFilter(const PoseFilterSettings& settings);
+
+  // A start pose that somebody gave or that was saved: a guess, not trust. Forgets everything else.
+  void start_at(std::int64_t t_ns, const Pose2& T_map_base) noexcept;
+  void start_at(std::int64_t t_ns, const Pose2& T_map_base, double sigma_m,
+                double sigma_rad) noexcept;
+
+  void predict(const OdometryIncrement& increment) noexcept;
+
+  // Once per cycle while odometry is stale: uncertainty grows with the time since the newest
+  // increment.
+  void drift_until(std::int64_t now_ns) noexcept;
+
+  CorrectionVerdict correct(const PoseCorrection& fix, std::int64_t now_ns) noexcept;
+
+  // The pose at now_ns, carried on from the newest increment with its speed while odometry is
+  // fresh.
+  PoseEstimate estimate(std::int64_t now_ns) const noexcept;
+
+  // All places the robot may be, best first: one when trusted, none before anything is known.
+  std::span<const PoseHypothesis> hypotheses() const noexcept;
+
+  const PoseFilterCounters& counters() const noexcept;
+};
+
+}  // namespace zonepack
