@@ -9,8 +9,8 @@
 #include <vector>
 
 // One map node as a source database holds it, bit for bit, before anything is encoded.
-// Frames: map = the optimised world frame; odom = the mapping robot's odometry frame; base = the robot
-// (x forward, y left, z up). Units: metres, radians, seconds since the epoch of the source.
+// Frames: map = the optimised world frame; odom = the mapping robot's odometry frame; base = the
+// robot (x forward, y left, z up). Units: metres, radians, seconds since the epoch of the source.
 namespace zonepack::packer {
 
 using Bytes = std::vector<std::byte>;
@@ -30,16 +30,18 @@ struct Matrix {
 // Keypoints of one signature, one entry per feature, in the database's row order.
 struct Features {
   std::size_t count = 0;
-  std::vector<float> x, y;               // pixels
+  std::vector<float> x, y;  // pixels
   std::vector<float> size, angle, response;
   std::vector<std::int32_t> octave;
-  std::vector<std::int32_t> word_id;     // <= 0: not in the dictionary
-  std::vector<float> point_x, point_y, point_z;  // T_base, metres; NaN where the database holds NULL
-  // Which of a point's three coordinates were NULL is told by NaN; a real NaN cannot be stored in SQLite.
+  std::vector<std::int32_t> word_id;  // <= 0: not in the dictionary
+  std::vector<float> point_x, point_y,
+      point_z;  // T_base, metres; NaN where the database holds NULL
+  // Which of a point's three coordinates were NULL is told by NaN; a real NaN cannot be stored in
+  // SQLite.
   enum class DescriptorType : std::uint8_t { kNone, kU8, kF32 };
   DescriptorType descriptor_type = DescriptorType::kNone;
-  std::uint32_t descriptor_dim = 0;      // elements per descriptor
-  Bytes descriptors;                     // count * dim elements, row-major
+  std::uint32_t descriptor_dim = 0;  // elements per descriptor
+  Bytes descriptors;                 // count * dim elements, row-major
 };
 
 struct GlobalDescriptor {
@@ -51,20 +53,21 @@ struct GlobalDescriptor {
 struct Scan {
   std::int32_t format = 0;  // 1..12 (FORMATS: scan formats); 0 when the database does not say
   float range_min = 0, range_max = 0, angle_min = 0, angle_max = 0, angle_increment = 0;
-  float max_points = 0;     // as stored
-  Transform local_transform{};
+  float max_points = 0;         // as stored
+  Transform local_transform{};  // T_base_scan; all zero: the database holds none
   Matrix data;
 };
 
 struct Grid {
   float cell_size = 0;
   std::array<float, 3> view_point{};
-  std::optional<Matrix> ground, obstacle, empty;  // float32 cells in the base frame; nullopt when NULL
+  std::optional<Matrix> ground, obstacle,
+      empty;  // float32 cells in the base frame; nullopt when NULL
 };
 
 struct Link {
-  std::int32_t to = 0;      // negative: a landmark
-  std::int32_t type = 0;    // the database's integer
+  std::int32_t to = 0;    // negative: a landmark
+  std::int32_t type = 0;  // the database's integer
   std::optional<Transform> transform;
   std::vector<double> information;  // 36, row-major 6x6; empty where the schema or the row has none
   std::optional<Matrix> user_data;
@@ -81,19 +84,20 @@ struct SignatureRecord {
   std::int32_t map_id = 0;  // layer
   std::int32_t weight = 0;  // -1: intermediate
   double stamp = 0;
-  std::string label;        // empty when NULL
+  std::string label;                           // empty when NULL
   std::optional<Transform> pose;               // T_map_base, optimised; nullopt: not in the graph
   std::optional<Transform> odometry_pose;      // T_odom_base
   std::optional<Transform> ground_truth_pose;  // T_world_base
-  Bytes velocity, gps, env_sensors;  // as stored (float32 x 6; float64 x 6; float64 x 3n); empty when NULL
-  Bytes calibration;                 // as stored; empty when NULL
+  Bytes velocity, gps,
+      env_sensors;    // as stored (float32 x 6; float64 x 6; float64 x 3n); empty when NULL
+  Bytes calibration;  // as stored; empty when NULL
   Features features;
   std::vector<GlobalDescriptor> global_descriptors;
   std::optional<Scan> scan;
   std::optional<Grid> grid;
   Bytes image, depth, depth_confidence;  // as stored; empty when NULL
   std::optional<Matrix> user_data;
-  std::vector<Link> links;           // rows with from_id = id, sorted by (type, to)
+  std::vector<Link> links;  // rows with from_id = id, sorted by (type, to)
 };
 
 }  // namespace zonepack::packer

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "packer/record.hpp"
+#include "packer/sources/damage.hpp"
+#include "packer/sources/rtabmap_schema.hpp"
+
+// The meaning of RTAB-Map's blobs: what each must look like, checked before it is carried.
+namespace zonepack::packer {
+
+// float32 channels of a scan format, 1 (XY) to 12 (XYZIRT); 0 for any other number.
+std::uint32_t scan_channels(std::int32_t format) noexcept;
+
+// Fills everything of `scan` but its data. Since 0.18: 19 float32 {format, range min, range max,
+// angle min, angle max, increment, max points, local 12}; from 0.16.1: 15 {max points, range max,
+// format, local 12}; before: 14 {max points, range max, local 12}. An empty blob leaves format 0.
+void parse_scan_info(std::span<const std::byte> info, SchemaVersion version, const Place& place,
+                     Scan& scan);
+
+// A scan's points: float32, with the channels that its format says; 1 to 10 where it says none.
+void check_scan(const Scan& scan, const Place& place);
+
+// The cells of a local grid: float32 with 2 (2D), 3, 4 or 6 (3D) channels.
+void check_grid_cells(const Matrix& cells, const Place& place);
+
+// Camera calibrations. Since 0.18: records of mono or stereo cameras one after the other, each with
+// its sizes in front. Before: 18 float32 a camera (16 before 0.11.2), or 19 or 17 for one stereo.
+void check_calibration(std::span<const std::byte> bytes, SchemaVersion version, const Place& place);
+
+}  // namespace zonepack::packer

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "packer/record.hpp"
+#include "packer/sources/damage.hpp"
+#include "packer/sources/keyed_rows.hpp"
+#include "packer/sources/rtabmap_schema.hpp"
+#include "packer/sources/zlib_blob.hpp"
+
+namespace zonepack::packer {
+
+// The row of table Data of one signature at a time: calibration, scan, grid, images, user data.
+// Columns of payloads that are not wanted are not read from the file.
+class DataReader {
+ public:
+  DataReader(const SqliteFile& file, const RtabmapSchema& schema, const PayloadSet& wanted);
+
+  bool serves(const PayloadSet& wanted) const noexcept;
+
+  // Replaces the parts of `out` that stand in Data.
+  void read(const Place& place, MatrixUnpacker& unpacker, SignatureRecord& out);
+
+ private:
+  void read_images(const Place& place, MatrixUnpacker& unpacker, SignatureRecord& out);
+  void read_scan(const Place& place, MatrixUnpacker& unpacker, std::optional<Scan>& out);
+  void read_grid(const Place& place, MatrixUnpacker& unpacker, std::optional<Grid>& out);
+  bool read_matrix(int column, const Place& place, MatrixUnpacker& unpacker,
+                   std::optional<Matrix>& out);
+
+  PayloadSet wanted_;
+  SchemaVersion version_;
+  KeyedRows rows_;
+  Matrix scratch_;
+};
+
+}  // namespace zonepack::packer

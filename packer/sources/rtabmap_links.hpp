@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "packer/record.hpp"
+#include "packer/sources/damage.hpp"
+#include "packer/sources/keyed_rows.hpp"
+#include "packer/sources/rtabmap_schema.hpp"
+#include "packer/sources/zlib_blob.hpp"
+
+namespace zonepack::packer {
+
+// The links that start at one signature at a time, sorted by type, then destination.
+class LinkReader {
+ public:
+  LinkReader(const SqliteFile& file, const RtabmapSchema& schema);
+  void read(const Place& place, MatrixUnpacker& unpacker, std::vector<Link>& out);
+
+ private:
+  void read_information(const Place& place, Link& link) const;
+
+  KeyedRows rows_;
+  bool has_variances_;  // before 0.13: two variances instead of an information matrix
+};
+
+// The global descriptors of one signature at a time, in the order of the table.
+class GlobalDescriptorReader {
+ public:
+  GlobalDescriptorReader(const SqliteFile& file, const RtabmapSchema& schema);
+  void read(const Place& place, MatrixUnpacker& unpacker, std::vector<GlobalDescriptor>& out);
+
+ private:
+  KeyedRows rows_;
+};
+
+}  // namespace zonepack::packer

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/sources/rtabmap_outline.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "packer/sources/cells.hpp"
+#include "packer/sources/zlib_blob.hpp"
+
+namespace zonepack::packer {
+namespace {
+
+constexpr std::int32_t kDeletedWeight = -9;
+constexpr std::int32_t kInt32 = 4, kFloat32 = 5, kInt8 = 1;
+
+void add_damage(MapOutline& outline, NodeOutline& node, const Damage& damage) {
+  if (!node.damaged) outline.damages.push_back(damage);
+  node.damaged = true;
+}
+
+std::int32_t node_id(const SqliteFile& file, const SqliteQuery& row) {
+  const std::int64_t id = row.integer(0);
+  if (row.type(0) != SQLITE_INTEGER || id < 1 || id > std::numeric_limits<std::int32_t>::max()) {
+    throw SqliteError(file.name() + ": Node.id holds '" + std::string(row.text(0)) +
+                      "', expected whole numbers from 1 to 2147483647");
+  }
+  return static_cast<std::int32_t>(id);
+}
+
+void read_nodes(const SqliteFile& file, const RtabmapSchema& schema, MapOutline& outline) {
+  SqliteQuery row(file, "SELECT " + node_columns(schema) + " FROM Node ORDER BY id");
+  while (row.step()) {
+    NodeOutline node;
+    node.id = node_id(file, row);
+    const Place place{&file.name(), node.id, "Node"};
+    try {
+      read_node(row, place, node);
+    } catch (const DamagedSignature& error) {
+      add_damage(outline, node, error.damage());
+    }
+    if (node.weight == kDeletedWeight) {
+      ++outline.deleted_nodes;
+    } else if (!outline.nodes.empty() && outline.nodes.back().id == node.id) {
+      add_damage(outline, outline.nodes.back(),
+                 {node.id, "Node.id", "expected one row, found two"});
+    } else {
+      outline.nodes.push_back(std::move(node));
+    }
+  }
+}
+
+struct AdminMatrix {
+  bool present = false;
+  Matrix matrix;
+};
+
+AdminMatrix admin_matrix(const SqliteFile& file, const SqliteQuery& row, int column,
+                         const char* name, std::int32_t type) {
+  AdminMatrix result;
+  const Place place{&file.name(), 0, name};
+  const auto blob = blob_cell(row, column, place);
+  if (blob.empty()) return result;
+  MatrixUnpacker().unpack(blob, place, result.matrix);
+  if (result.matrix.type != type) {
+    place.damaged("expected " + describe_type(type) + ", found " +
+                  describe_type(result.matrix.type));
+  }
+  result.present = true;
+  return result;
+}
+
+void assign_pose(const SqliteFile& file, MapOutline& outline, std::int32_t id,
+                 std::span<const std::byte> pose) {
+  const Place place{&file.name(), id, "Admin.opt_poses"};
+  if (id <= 0) {
+    ++outline.landmark_poses;
+    return;
+  }
+  auto* const node = const_cast<NodeOutline*>(outline.find(id));
+  if (node == nullptr) {
+    ++outline.poses_without_node;
+    return;
+  }
+  if (node->pose) {
+    add_damage(outline, *node, {id, "Admin.opt_ids", "expected each id once, found it twice"});
+    return;
+  }
+  try {
+    node->pose = transform_from(pose, place);
+  } catch (const DamagedSignature& error) {
+    add_damage(outline, *node, error.damage());
+  }
+}
+
+void read_optimised_poses(const SqliteFile& file, const RtabmapSchema& schema,
+                          MapOutline& outline) {
+  SqliteQuery row(file, "SELECT " + schema.columns("Admin", {"opt_ids", "opt_poses"}) +
+                            " FROM Admin WHERE version IS NOT NULL");
+  if (!row.step()) return;
+  const AdminMatrix ids = admin_matrix(file, row, 0, "Admin.opt_ids", kInt32);
+  const AdminMatrix poses = admin_matrix(file, row, 1, "Admin.opt_poses", kFloat32);
+  const std::size_t count = ids.matrix.data.size() / sizeof(std::int32_t);
+  const std::size_t pose_bytes = sizeof(Transform);
+  if (poses.matrix.data.size() != count * pose_bytes) {
+    throw SqliteError(file.name() + ": Admin.opt_ids holds " + std::to_string(count) +
+                      " ids and Admin.opt_poses " +
+                      std::to_string(poses.matrix.data.size() / sizeof(float)) +
+                      " numbers, expected 12 for each id; open the database in RTAB-Map and close "
+                      "it so that it saves them again");
+  }
+  outline.has_optimised_poses = count > 0;
+  const std::span<const std::byte> id_bytes(ids.matrix.data);
+  const std::span<const std::byte> pose_span(poses.matrix.data);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::int32_t id;
+    std::memcpy(&id, id_bytes.data() + i * sizeof(id), sizeof(id));
+    assign_pose(file, outline, id, pose_span.subspan(i * pose_bytes, pose_bytes));
+  }
+}
+
+void count_unlinked(MapOutline& outline) {
+  for (const NodeOutline& node : outline.nodes) {
+    if (!node.pose && !node.damaged) ++outline.unlinked_by_session[node.map_id];
+  }
+}
+
+void read_optimised_map(const SqliteFile& file, const RtabmapSchema& schema, MapOutline& outline) {
+  SqliteQuery row(file, "SELECT " +
+                            schema.columns("Admin", {"opt_map", "opt_map_x_min", "opt_map_y_min",
+                                                     "opt_map_resolution"}) +
+                            " FROM Admin WHERE version IS NOT NULL");
+  if (!row.step()) return;
+  AdminMatrix cells = admin_matrix(file, row, 0, "Admin.opt_map", kInt8);
+  if (!cells.present) return;
+  const Place place{&file.name(), 0, "Admin.opt_map"};
+  outline.optimised_map =
+      OptimisedMap{std::move(cells.matrix), float_cell(row, 1, place.at("Admin.opt_map_x_min"), 0),
+                   float_cell(row, 2, place.at("Admin.opt_map_y_min"), 0),
+                   float_cell(row, 3, place.at("Admin.opt_map_resolution"), 0)};
+}
+
+void read_parameters(const SqliteFile& file, const RtabmapSchema& schema, MapOutline& outline) {
+  if (!schema.has("Info", "parameters")) return;
+  SqliteQuery row(file,
+                  "SELECT parameters FROM Info WHERE parameters IS NOT NULL "
+                  "ORDER BY rowid DESC LIMIT 1");
+  if (row.step()) outline.parameters = text_cell(row, 0, {&file.name(), 0, "Info.parameters"});
+}
+
+std::uint64_t count(const SqliteFile& file, const std::string& sql) {
+  SqliteQuery row(file, sql);
+  return row.step() ? static_cast<std::uint64_t>(row.integer(0)) : 0;
+}
+
+std::string blob_sum(const RtabmapSchema& schema, std::initializer_list<const char*> columns) {
+  std::string sum = "SELECT sum(0";
+  for (const char* column : columns) {
+    if (schema.has("Data", column)) {
+      sum.append("+ifnull(length(").append(column).append("),0)");
+    }
+  }
+  return sum + ") FROM Data WHERE id IN (SELECT id FROM Node WHERE weight IS NOT -9)";
+}
+
+void read_totals(const SqliteFile& file, const RtabmapSchema& schema, MapOutline& outline) {
+  const std::string& features = schema.feature_table();
+  if (schema.has(features)) {
+    std::string sql = "SELECT count(*) FROM " + features;
+    if (outline.deleted_nodes != 0) {
+      sql += " WHERE node_id IN (SELECT id FROM Node WHERE weight IS NOT -9)";
+    }
+    outline.feature_count = count(file, sql);
+  }
+  if (schema.has("Data")) {
+    outline.scan_bytes = count(file, blob_sum(schema, {"scan"}));
+    outline.grid_bytes =
+        count(file, blob_sum(schema, {"ground_cells", "obstacle_cells", "empty_cells"}));
+  }
+  if (schema.has("Link")) {
+    outline.links_to_missing_nodes = count(
+        file, "SELECT count(*) FROM Link WHERE to_id > 0 AND to_id NOT IN (SELECT id FROM Node)");
+  }
+}
+
+}  // namespace
+
+std::string node_columns(const RtabmapSchema& schema) {
+  return schema.columns("Node", {"id", "map_id", "weight", "stamp", "label", "pose",
+                                 "ground_truth_pose", "velocity", "gps", "env_sensors"});
+}
+
+void read_node(const SqliteQuery& row, const Place& place, NodeOutline& node) {
+  node.weight = int32_cell(row, 2, place.at("Node.weight"), 0);
+  node.map_id = int32_cell(row, 1, place.at("Node.map_id"));
+  node.stamp = finite_cell(row, 3, place.at("Node.stamp"));
+  node.label = text_cell(row, 4, place.at("Node.label"));
+  node.odometry_pose = transform_cell(row, 5, place.at("Node.pose"));
+}
+
+MapOutline read_outline(const SqliteFile& file, const RtabmapSchema& schema) {
+  MapOutline outline;
+  outline.schema_version = schema.version().text();
+  outline.warnings = schema.warnings();
+  read_nodes(file, schema, outline);
+  read_optimised_poses(file, schema, outline);
+  count_unlinked(outline);
+  read_optimised_map(file, schema, outline);
+  read_parameters(file, schema, outline);
+  read_totals(file, schema, outline);
+  return outline;
+}
+
+}  // namespace zonepack::packer

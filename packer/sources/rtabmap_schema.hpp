@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <compare>
+#include <initializer_list>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "packer/sources/sqlite.hpp"
+
+namespace zonepack::packer {
+
+// The version an RTAB-Map database carries in Admin.version, "0.23.8".
+struct SchemaVersion {
+  int major = 0, minor = 0, patch = 0;
+  friend auto operator<=>(const SchemaVersion&, const SchemaVersion&) = default;
+  std::string text() const;
+};
+
+// Which tables and columns an RTAB-Map database has. What is read is decided by these; the version
+// decides only where the same column changed its meaning (calibration and scan_info before 0.18).
+class RtabmapSchema {
+ public:
+  // Throws SqliteError when this is not an RTAB-Map database, older than 0.11, or newer than 0.23
+  // and without a column that this program needs.
+  explicit RtabmapSchema(const SqliteFile& file);
+
+  SchemaVersion version() const noexcept { return version_; }
+  const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+  bool has(const std::string& table) const { return tables_.contains(table); }
+  bool has(const std::string& table, const std::string& column) const;
+  // The table of keypoints: Feature, before 0.13 Map_Node_Word.
+  const std::string& feature_table() const noexcept { return feature_table_; }
+
+  // A SELECT list over `table` in the given order, with NULL for each column that it has not, so
+  // that a column's position never depends on the version.
+  std::string columns(const std::string& table, std::initializer_list<const char*> names) const;
+
+ private:
+  void require_known_columns(const SqliteFile& file) const;
+
+  SchemaVersion version_;
+  std::string feature_table_;
+  std::map<std::string, std::vector<std::string>> tables_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace zonepack::packer

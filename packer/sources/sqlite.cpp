@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/sources/sqlite.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+namespace zonepack::packer {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kDatabaseMagic("SQLite format 3\0", 16);
+constexpr std::string_view kJournalMagic("\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", 8);
+
+std::string first_bytes(const fs::path& path, std::size_t count) {
+  std::string bytes(count, '\0');
+  std::ifstream in(path, std::ios::binary);
+  in.read(bytes.data(), static_cast<std::streamsize>(count));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
+}
+
+fs::path beside(const fs::path& path, const char* suffix) {
+  fs::path other = path;
+  other += suffix;
+  return other;
+}
+
+void refuse_unless_database(const fs::path& path, const std::string& name) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) throw SqliteError(name + ": no such file");
+  if (error) throw SqliteError(name + ": " + error.message());
+  if (fs::is_directory(status)) {
+    throw SqliteError(name + ": is a folder, expected a database file");
+  }
+  if (!fs::is_regular_file(status)) {
+    throw SqliteError(name + ": is not a regular file, expected a database file");
+  }
+  if (fs::file_size(path, error) == 0 && !error) {
+    throw SqliteError(name + ": is empty (0 bytes), expected a database file");
+  }
+  if (!std::ifstream(path, std::ios::binary)) {
+    throw SqliteError(name + ": cannot be read: " + std::strerror(errno));
+  }
+  if (first_bytes(path, kDatabaseMagic.size()) != kDatabaseMagic) {
+    throw SqliteError(name +
+                      ": is not a SQLite database (its first 16 bytes are not those of one)");
+  }
+}
+
+void refuse_if_not_closed(const fs::path& path, const std::string& name) {
+  std::error_code error;
+  const fs::path wal = beside(path, "-wal");
+  if (const auto size = fs::file_size(wal, error); !error && size > 0) {
+    throw SqliteError(name + ": has changes that are not in the file yet (" + wal.string() +
+                      "); close RTAB-Map, or run: sqlite3 '" + name +
+                      "' 'PRAGMA wal_checkpoint(TRUNCATE)'");
+  }
+  const fs::path journal = beside(path, "-journal");
+  if (first_bytes(journal, kJournalMagic.size()) == kJournalMagic) {
+    throw SqliteError(name + ": a write to it was interrupted (" + journal.string() +
+                      "); close RTAB-Map, or let SQLite restore it: sqlite3 '" + name +
+                      "' 'PRAGMA schema_version'");
+  }
+}
+
+std::string immutable_uri(const fs::path& path) {
+  constexpr std::string_view kHex = "0123456789ABCDEF";
+  std::string uri = "file://";
+  for (const char c : fs::absolute(path).string()) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) != 0 || std::strchr("/-._~", c) != nullptr) {
+      uri += c;
+    } else {
+      uri += {'%', kHex[byte >> 4], kHex[byte & 15]};
+    }
+  }
+  return uri + "?mode=ro&immutable=1";
+}
+
+}  // namespace
+
+SqliteFile::SqliteFile(const fs::path& path) : name_(path.string()) {
+  refuse_unless_database(path, name_);
+  refuse_if_not_closed(path, name_);
+  sqlite3* handle = nullptr;
+  const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
+  const int code = sqlite3_open_v2(immutable_uri(path).c_str(), &handle, flags, nullptr);
+  handle_.reset(handle);
+  if (code != SQLITE_OK) {
+    throw SqliteError(name_ + ": cannot be opened: " + sqlite3_errstr(code));
+  }
+  sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  sqlite3_exec(handle, "PRAGMA cell_size_check=ON", nullptr, nullptr, nullptr);
+}
+
+std::vector<std::string> SqliteFile::columns(const std::string& table) const {
+  SqliteQuery query(*this, "SELECT lower(name) FROM pragma_table_info('" + table + "')");
+  std::vector<std::string> names;
+  while (query.step()) names.emplace_back(query.text(0));
+  return names;
+}
+
+SqliteQuery::SqliteQuery(const SqliteFile& file, const std::string& sql) : file_(&file) {
+  sqlite3_stmt* statement = nullptr;
+  const int code = sqlite3_prepare_v3(file.handle(), sql.data(), static_cast<int>(sql.size()),
+                                      SQLITE_PREPARE_PERSISTENT, &statement, nullptr);
+  statement_.reset(statement);
+  if (code != SQLITE_OK) fail();
+}
+
+void SqliteQuery::restart() { sqlite3_reset(statement_.get()); }
+
+void SqliteQuery::restart(std::int64_t first) {
+  restart();
+  sqlite3_bind_int64(statement_.get(), 1, first);
+}
+
+void SqliteQuery::restart(std::int64_t first, std::int64_t second) {
+  restart(first);
+  sqlite3_bind_int64(statement_.get(), 2, second);
+}
+
+std::string_view SqliteQuery::text(int column) const {
+  const auto* const data = sqlite3_column_text(statement_.get(), column);
+  if (data == nullptr) return {};
+  const int size = sqlite3_column_bytes(statement_.get(), column);
+  return {reinterpret_cast<const char*>(data), static_cast<std::size_t>(size)};
+}
+
+void SqliteQuery::fail() const {
+  const int code = sqlite3_extended_errcode(file_->handle());
+  const std::string what = file_->name() + ": ";
+  const int primary = code & 0xff;
+  if (primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB || primary == SQLITE_IOERR) {
+    throw SqliteError(what + "a part of the file cannot be read (" +
+                      sqlite3_errmsg(file_->handle()) +
+                      "); copy it again from where it was recorded, or salvage it with: sqlite3 '" +
+                      file_->name() + "' .recover | sqlite3 NEW.db");
+  }
+  throw SqliteError(what + sqlite3_errmsg(file_->handle()));
+}
+
+}  // namespace zonepack::packer

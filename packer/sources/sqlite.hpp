@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sqlite3.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace zonepack::packer {
+
+// The file is no database, or a part of it cannot be read. The message names the file and what to
+// do. Other parts of the same file may still be readable.
+class SqliteError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// A SQLite database opened read-only and immutable: not one byte, lock, journal or timestamp of it
+// changes. One object serves one thread; another thread opens its own.
+class SqliteFile {
+ public:
+  // Refuses what is not a whole, closed database: a missing or empty file, a folder, another kind
+  // of file, one with a live write-ahead log or a hot journal beside it.
+  explicit SqliteFile(const std::filesystem::path& path);
+
+  const std::string& name() const noexcept { return name_; }  // the path as given
+  sqlite3* handle() const noexcept { return handle_.get(); }
+
+  // Lower-case column names of a table; empty when there is no such table.
+  std::vector<std::string> columns(const std::string& table) const;
+
+ private:
+  struct Close {
+    void operator()(sqlite3* handle) const noexcept { sqlite3_close_v2(handle); }
+  };
+  std::string name_;
+  std::unique_ptr<sqlite3, Close> handle_;
+};
+
+// A prepared statement. Columns are read by position, in place: a blob or text view is valid until
+// the next step(), restart() or destruction.
+class SqliteQuery {
+ public:
+  SqliteQuery(const SqliteFile& file, const std::string& sql);
+
+  // Starts over with the given values for ?1, ?2.
+  void restart();
+  void restart(std::int64_t first);
+  void restart(std::int64_t first, std::int64_t second);
+
+  // The next row; false when there is none. Throws SqliteError where the file cannot be read.
+  bool step() {
+    const int code = sqlite3_step(statement_.get());
+    if (code == SQLITE_ROW) return true;
+    if (code == SQLITE_DONE) return false;
+    fail();
+  }
+
+  int type(int column) const { return sqlite3_column_type(statement_.get(), column); }
+  bool is_null(int column) const { return type(column) == SQLITE_NULL; }
+  std::int64_t integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
+  double real(int column) const { return sqlite3_column_double(statement_.get(), column); }
+  std::string_view text(int column) const;
+  std::span<const std::byte> blob(int column) const {
+    const void* const data = sqlite3_column_blob(statement_.get(), column);
+    const int size = data != nullptr ? sqlite3_column_bytes(statement_.get(), column) : 0;
+    return {static_cast<const std::byte*>(data), static_cast<std::size_t>(size)};
+  }
+
+ private:
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const noexcept { sqlite3_finalize(statement); }
+  };
+  [[noreturn]] void fail() const;
+
+  const SqliteFile* file_;
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+};
+
+}  // namespace zonepack::packer
