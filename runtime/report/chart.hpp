@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/report/svg.hpp"
+#include "runtime/report/ticks.hpp"
+
+// Values over the time of a run, from zero up, with what explains them: a limit, the zone the robot
+// was in, stretches of time that went wrong. Times are seconds since the start of the run.
+namespace zonepack::report {
+
+struct Sample {
+  double t_s = 0;
+  double value = 0;
+};
+
+struct ChartSeries {
+  std::string name;
+  std::vector<Sample> samples;  // by time; samples that are not finite break the line
+  Color color = kOurs;
+  bool steps = true;      // the value holds until the next sample
+  bool compared = false;  // thinner, beneath the others
+};
+
+struct ChartLimit {
+  std::string name;
+  double value = 0;
+};
+
+struct TimeSpan {
+  double from_s = 0;
+  double to_s = 0;
+};
+
+struct ChartShade {
+  std::string name;
+  Color color = kLimit;
+  std::vector<TimeSpan> spans;
+};
+
+struct TimelineBlock {
+  TimeSpan span;
+  std::string name;
+  Color color;
+};
+
+struct Chart {
+  std::string title;
+  std::vector<ChartSeries> series;
+  std::optional<ChartLimit> limit;
+  std::vector<ChartShade> shades;
+  std::vector<TimelineBlock> timeline;  // the zone the robot was in
+  Quantity quantity = Quantity::kNumber;
+  std::string unit;  // after numbers (" m"); empty for counts and bytes
+  double duration_s =
+      0;  // the time axis goes from 0 to here, or to the last sample if that is later
+  double width_px = 900;
+  double plot_height_px = 190;
+};
+
+Svg draw_chart(const Chart& chart);
+
+// The value at the end of each series, as printed beside it.
+std::string end_value(const Chart& chart, double value);
+
+}  // namespace zonepack::report

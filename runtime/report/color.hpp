@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace zonepack::report {
+
+struct Color {
+  std::uint8_t r = 0, g = 0, b = 0;
+  friend bool operator==(const Color&, const Color&) = default;
+};
+
+// "#rrggbb".
+std::string to_hex(Color color);
+
+// weight 0: a; 1: b.
+Color mix(Color a, Color b, double weight) noexcept;
+
+// Black or white, whichever reads better on `background`.
+Color ink_on(Color background) noexcept;
+
+// From pale to deep for share 0 to 1, rising in darkness all the way, so that it reads in grey and
+// by colour-blind eyes; never so deep that black text fails on it.
+Color ramp_color(double share) noexcept;
+
+// Colours told apart by colour-blind eyes too (after P. Tol's "muted" scheme); repeats after
+// kHueCount.
+inline constexpr std::size_t kHueCount = 9;
+Color hue(std::size_t index) noexcept;
+
+inline constexpr Color kWhite{255, 255, 255};
+inline constexpr Color kInk{0x1f, 0x24, 0x2b};       // text
+inline constexpr Color kQuiet{0x5c, 0x65, 0x70};     // secondary text
+inline constexpr Color kFaint{0xe3, 0xe6, 0xea};     // grid lines
+inline constexpr Color kWall{0x8a, 0x93, 0x9e};      // zone borders
+inline constexpr Color kOurs{0x0b, 0x5f, 0xa5};      // what Zonepack does
+inline constexpr Color kOursToo{0x3b, 0xa7, 0x8f};   // its second curve
+inline constexpr Color kOther{0x9a, 0x9a, 0x9a};     // what is compared with
+inline constexpr Color kOtherToo{0xb8, 0xa0, 0x78};  // its second curve
+inline constexpr Color kLimit{0xc4, 0x2b, 0x1c};     // limits, and what is wrong
+inline constexpr Color kDoor{0xe0, 0x7b, 0x00};      // portals
+
+}  // namespace zonepack::report

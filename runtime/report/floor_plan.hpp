@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/pack_format/geometry.hpp"
+#include "runtime/report/svg.hpp"
+
+// A map seen from above: zones, portals, signatures and routes in metres of the map frame, drawn to
+// one scale. A map much taller than wide is turned by a quarter (page right = +y, page down = +x);
+// the axes say so.
+namespace zonepack::report {
+
+struct PlanZone {
+  std::string name;
+  std::string note;  // second line of the label, where it fits; may be empty
+  std::string hint;  // shown while the mouse rests on the zone
+  Polygon polygon;
+  Color fill = kWhite;
+};
+
+struct PlanRoutePoint {
+  Point2 p_map;
+  Color color;
+};
+
+// What the colour of the zones means.
+struct PlanRamp {
+  std::string low, high;
+};
+
+struct FloorPlan {
+  std::vector<PlanZone> zones;
+  std::vector<Segment2> portals;
+  std::vector<Point2> signatures;
+  std::vector<PlanRoutePoint> route;  // as driven by the estimate, in order
+  std::vector<Point2> true_route;     // empty when unknown
+  std::optional<PlanRamp> ramp;
+  double width_px = 900;
+};
+
+// Zones without a finite vertex and points that are not finite are left out.
+Svg draw_floor_plan(const FloorPlan& plan);
+
+}  // namespace zonepack::report

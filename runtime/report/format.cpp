@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/report/format.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace zonepack::report {
+namespace {
+
+// Advances of DejaVu Sans for U+0020..U+007E, in hundredths of the font size.
+constexpr std::array<unsigned char, 95> kAdvances = {
+    32, 40, 46, 84, 64, 95, 78, 27, 39,  39, 50, 84, 32, 36, 32, 34, 64, 64, 64, 64, 64, 64, 64, 64,
+    64, 64, 34, 34, 84, 84, 84, 53, 100, 68, 69, 70, 77, 63, 58, 77, 75, 29, 29, 66, 56, 86, 75, 79,
+    60, 79, 69, 63, 61, 73, 68, 99, 69,  61, 69, 39, 34, 39, 84, 50, 50, 61, 63, 55, 63, 62, 35, 63,
+    63, 28, 28, 58, 28, 97, 63, 61, 63,  63, 41, 52, 39, 63, 59, 82, 59, 59, 52, 64, 34, 64, 84};
+constexpr double kOtherAdvance = 0.65;
+constexpr double kBoldFactor = 1.12;
+constexpr std::string_view kThinSpace = "\xE2\x80\x89";
+constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
+
+bool is_continuation(char c) noexcept { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
+
+// Bytes of the well-formed UTF-8 sequence at the front; 0 when there is none.
+std::size_t utf8_length(std::string_view text) noexcept {
+  const auto lead = static_cast<unsigned char>(text[0]);
+  if (lead < 0x80) return 1;
+  const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
+  if (lead < 0xC2 || lead > 0xF4 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if (!is_continuation(text[i])) return 0;
+  }
+  const auto second = static_cast<unsigned char>(text[1]);
+  const bool overlong = (lead == 0xE0 && second < 0xA0) || (lead == 0xF0 && second < 0x90);
+  const bool surrogate = lead == 0xED && second >= 0xA0;
+  const bool too_high = lead == 0xF4 && second >= 0x90;
+  const bool not_a_character =
+      lead == 0xEF && second == 0xBF && static_cast<unsigned char>(text[2]) >= 0xBE;
+  return overlong || surrogate || too_high || not_a_character ? 0 : length;
+}
+
+}  // namespace
+
+std::string format_number(double value, int decimals) {
+  if (!std::isfinite(value)) return "-";
+  std::array<char, 400> buffer;
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                          std::chars_format::fixed, decimals);
+  std::string text(buffer.data(), error == std::errc() ? end : buffer.data());
+  if (text.find('.') != std::string::npos) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+  }
+  return text == "-0" ? "0" : text;
+}
+
+std::string format_count(std::uint64_t count) {
+  std::string text = std::to_string(count);
+  for (std::size_t at = text.size(); at > 3;) {
+    at -= 3;
+    text.insert(at, kThinSpace);
+  }
+  return text;
+}
+
+std::string format_bytes(double bytes) {
+  constexpr std::array kUnits = {"B", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
+  std::size_t unit = 0;
+  while (std::abs(bytes) >= 1024 && unit + 1 < kUnits.size()) {
+    bytes /= 1024;
+    ++unit;
+  }
+  const double size = std::abs(bytes);
+  const int decimals = unit == 0 || size >= 100 ? 0 : size >= 10 ? 1 : 2;
+  return format_number(bytes, decimals) + " " + kUnits[unit];
+}
+
+std::string format_seconds(double seconds) {
+  if (!std::isfinite(seconds) || std::abs(seconds) < 120) return format_number(seconds, 1) + " s";
+  const double minutes = std::floor(std::round(seconds) / 60);
+  return format_number(minutes, 0) + " min " +
+         format_number(std::round(seconds) - minutes * 60, 0) + " s";
+}
+
+std::string escape_xml(std::string_view text) {
+  std::string escaped;
+  escaped.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0) {
+      escaped += kReplacement;
+      text.remove_prefix(1);
+      continue;
+    }
+    switch (const char c = text[0]) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\'':
+        escaped += "&#39;";
+        break;
+      default:
+        if (length > 1 || static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t') {
+          escaped += text.substr(0, length);
+        }
+    }
+    text.remove_prefix(length);
+  }
+  return escaped;
+}
+
+double text_width_em(std::string_view text, bool bold) noexcept {
+  double width = 0;
+  for (const char c : text) {
+    if (is_continuation(c)) continue;
+    const bool known = c >= ' ' && c <= '~';
+    width += known ? kAdvances[static_cast<std::size_t>(c - ' ')] / 100.0 : kOtherAdvance;
+  }
+  return bold ? width * kBoldFactor : width;
+}
+
+std::vector<std::string> wrap_text(std::string_view text, double width_em) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::size_t blank = text.find(' ');
+    const std::string_view word = text.substr(0, blank);
+    text.remove_prefix(blank == std::string_view::npos ? text.size() : blank + 1);
+    if (word.empty()) continue;
+    const bool fits =
+        !lines.empty() &&
+        text_width_em(lines.back()) + text_width_em(" ") + text_width_em(word) <= width_em;
+    if (fits) {
+      lines.back().append(" ").append(word);
+    } else {
+      lines.emplace_back(word);
+    }
+  }
+  return lines;
+}
+
+}  // namespace zonepack::report

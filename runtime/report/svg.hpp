@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/report/color.hpp"
+
+namespace zonepack::report {
+
+// A place on the page: pixels, x right, y down.
+struct Px {
+  double x = 0;
+  double y = 0;
+};
+
+struct Style {
+  std::optional<Color> fill = {};
+  std::optional<Color> stroke = {};
+  double stroke_width = 1;
+  double opacity = 1;
+  std::string_view dash = {};  // "4 3"
+  bool round = false;          // line ends and joins
+  std::string_view hint = {};  // shown while the mouse rests on the shape
+};
+
+enum class Anchor { kStart, kMiddle, kEnd };
+
+struct TextStyle {
+  double size = 12;
+  Color color = kInk;
+  bool bold = false;
+  Anchor anchor = Anchor::kStart;
+  std::optional<Color> halo = {};  // a border of this colour, to read on top of lines
+  double opacity = 1;
+};
+
+// Writes one drawing as SVG 1.1 text: no script, style sheet, id or outside resource, so that any
+// number of drawings can stand in one page. The same calls give the same bytes. Points that are not
+// finite are left out.
+class Svg {
+ public:
+  Svg(double width, double height) : width_(width), height_(height) {}
+
+  double width() const noexcept { return width_; }
+  double height() const noexcept { return height_; }
+
+  void line(Px from, Px to, const Style& style);
+  void polyline(std::span<const Px> points, const Style& style);
+  // Rings of one area, holes by the even-odd rule.
+  void polygon(std::span<const std::vector<Px>> rings, const Style& style);
+  void rect(Px corner, double width, double height, const Style& style, double radius = 0);
+  void circle(Px center, double radius, const Style& style);
+  void text(Px baseline, std::string_view text, const TextStyle& style);
+
+  // Until close(), what is drawn outside the box is cut off; coordinates stay those of the drawing.
+  void open_clip(Px corner, double width, double height);
+  void open_group(std::string_view hint = {});
+  void close();
+
+  // Another drawing with its upper left corner here.
+  void place(const Svg& drawing, Px corner);
+
+  // The finished document, to stand in a page or (with an XML declaration) as a file.
+  std::string inline_text() const;
+  std::string file_text() const;
+
+ private:
+  void shape(std::string_view name, std::string_view attributes, const Style& style);
+
+  double width_;
+  double height_;
+  std::string body_;
+  std::vector<std::string_view> open_;
+};
+
+}  // namespace zonepack::report

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/report/report.hpp"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "tests/unit/report/xml_check.hpp"
+
+namespace zonepack::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+Report sample() {
+  Svg drawing(900, 100);
+  drawing.text({10, 20}, "drawn", {});
+  Report report;
+  report.title = "Map <hospital>";
+  report.headline = "24 zones & 185 signatures.";
+  report.origin = "zonepack";
+  report.facts = {{"zones", "24", "", false}, {"budget violations", "3", "must be 0", true}};
+  report.figures.push_back({"Plan", "How to read it.", drawing});
+  report.tables.push_back(
+      {"Zones", "By name.", {{"Zone"}, {"Bytes", true}}, {{"L1", "12"}, {"H1"}}});
+  return report;
+}
+
+class ReportFileTest : public testing::Test {
+ protected:
+  ReportFileTest() {
+    std::string name = (fs::temp_directory_path() / "report_XXXXXX").string();
+    EXPECT_NE(::mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  ~ReportFileTest() override { fs::remove_all(folder_); }
+  std::string path(const char* name) const { return (folder_ / name).string(); }
+  static std::string read(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  fs::path folder_;
+};
+
+TEST(Report, AsAPageIsWellFormedAndHoldsEverything) {
+  const std::string html = to_html(sample());
+  EXPECT_EQ(XmlCheck::fault_of(html), "");
+  for (const char* part :
+       {"<h1>Map &lt;hospital&gt;</h1>", "24 zones &amp; 185 signatures.", ">drawn</text>",
+        "How to read it.", "<td>L1</td><td class=\"n\">12</td>", "<td>H1</td><td class=\"n\"></td>",
+        "<div class=\"bad\"><dt>budget violations</dt>"}) {
+    EXPECT_EQ(count_of(html, part), 1u) << part;
+  }
+}
+
+TEST(Report, AsAPageNeedsNothingFromOutside) {
+  const std::string html = to_html(sample());
+  for (const char* part : {"<script", "src=", "href=", "url(", "@import"}) {
+    EXPECT_EQ(count_of(html, part), 0u) << part;
+  }
+  // The namespace of SVG is a name, not a resource.
+  EXPECT_EQ(count_of(html, "http"), count_of(html, "xmlns=\"http://www.w3.org/2000/svg\""));
+}
+
+TEST(Report, AsASheetHoldsEverything) {
+  const std::string svg = to_sheet(sample()).file_text();
+  EXPECT_EQ(XmlCheck::fault_of(svg), "");
+  for (const char* part :
+       {">Map &lt;hospital&gt;<", ">drawn<", ">How to read it.<", ">12<", ">must be 0<"}) {
+    EXPECT_EQ(count_of(svg, part), 1u) << part;
+  }
+}
+
+TEST(Report, WithNothingInItIsStillAPageAndASheet) {
+  EXPECT_EQ(XmlCheck::fault_of(to_html(Report{})), "");
+  EXPECT_EQ(XmlCheck::fault_of(to_sheet(Report{}).file_text()), "");
+}
+
+TEST_F(ReportFileTest, TheNameDecidesTheKind) {
+  EXPECT_EQ(write_report(path("r.html"), sample()), std::nullopt);
+  EXPECT_EQ(read(path("r.html")), to_html(sample()));
+  EXPECT_EQ(write_report(path("r.svg"), sample()), std::nullopt);
+  EXPECT_EQ(read(path("r.svg")), to_sheet(sample()).file_text());
+  EXPECT_EQ(write_report(path("r.png"), sample()), std::nullopt);
+  EXPECT_TRUE(read(path("r.png")).starts_with("\x89PNG\r\n"));
+}
+
+TEST_F(ReportFileTest, AnotherNameIsRefusedWithWhatIsAllowed) {
+  const std::optional<std::string> problem = write_report(path("r.pdf"), sample());
+  ASSERT_TRUE(problem.has_value());
+  EXPECT_NE(problem->find(path("r.pdf")), std::string::npos);
+  EXPECT_NE(problem->find(".html, .svg or .png"), std::string::npos);
+}
+
+TEST_F(ReportFileTest, AMissingFolderIsNamed) {
+  const std::optional<std::string> problem = write_report(path("no/r.html"), sample());
+  ASSERT_TRUE(problem.has_value());
+  EXPECT_NE(problem->find("No such file or directory"), std::string::npos);
+}
+
+TEST_F(ReportFileTest, WithoutRsvgConvertItSaysWhatToInstallAndLeavesNothing) {
+  const std::string old = ::getenv("PATH");
+  ::setenv("PATH", folder_.c_str(), 1);
+  const std::optional<std::string> problem = write_report(path("r.png"), sample());
+  ::setenv("PATH", old.c_str(), 1);
+  ASSERT_TRUE(problem.has_value());
+  EXPECT_NE(problem->find("librsvg2-bin"), std::string::npos);
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(ReportFileTest, AFailingRsvgConvertLeavesTheOldPicture) {
+  std::ofstream(path("r.png")) << "old";
+  std::ofstream(path("rsvg-convert")) << "#!/bin/sh\nexit 3\n";
+  fs::permissions(path("rsvg-convert"), fs::perms::owner_all);
+  const std::string old = ::getenv("PATH");
+  ::setenv("PATH", folder_.c_str(), 1);
+  const std::optional<std::string> problem = write_report(path("r.png"), sample());
+  ::setenv("PATH", old.c_str(), 1);
+  ASSERT_TRUE(problem.has_value());
+  EXPECT_NE(problem->find("status 3"), std::string::npos);
+  EXPECT_EQ(read(path("r.png")), "old");
+}
+
+}  // namespace
+}  // namespace zonepack::report
