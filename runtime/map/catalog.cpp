@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/map/catalog.hpp"
+
+#include <algorithm>
+
+#include "platform/storage.hpp"
+
+namespace zonepack {
+namespace {
+
+std::string text_of(const flatbuffers::String* text) {
+  return text == nullptr ? std::string() : text->str();
+}
+
+}  // namespace
+
+Result<Catalog> Catalog::open(const std::string& folder, PayloadMask payload) {
+  const std::string path = folder + "/" + std::string(kManifestName);
+  const Result<std::vector<std::byte>> file =
+      read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail));
+  if (!file) return file.error();
+  const Result<const fb::Manifest*> checked = check_manifest(*file);
+  if (!checked) return checked.error();
+  const fb::Manifest& manifest = **checked;
+
+  Catalog catalog;
+  catalog.folder = folder;
+  std::copy(manifest.lineage()->begin(), manifest.lineage()->end(), catalog.lineage.begin());
+  catalog.version = manifest_digest(*file);
+  catalog.payload = payload;
+  const MapCosts costs = map_costs(manifest, payload);
+  catalog.fixed_bytes = costs.fixed_bytes;
+  catalog.smallest = smallest_budget(manifest, costs, {});
+  for (const fb::Zone* zone : *manifest.zones()) {
+    CatalogZone& entry = catalog.zones.emplace_back();
+    entry.name = zone->name()->str();
+    entry.zone_type = text_of(zone->zone_type());
+    entry.polygon = polygon_of(*zone);
+    entry.signatures = zone->signatures();
+    entry.slots = costs.zone_slots[catalog.zones.size() - 1];
+    const PayloadMask mask = payload_closure(payload, zone->grid_needs_scan());
+    for (const fb::PayloadBytes* bytes : *zone->payloads()) {
+      if ((mask & mask_of(static_cast<fb::PayloadKind>(bytes->kind()))) == 0) continue;
+      entry.stored_bytes += bytes->stored();
+      entry.decoded_bytes += bytes->decoded();
+    }
+    entry.pack = zone->pack()->str();
+    std::copy(zone->pack_digest()->begin(), zone->pack_digest()->end(), entry.pack_digest.begin());
+  }
+  if (manifest.portals() != nullptr) {
+    for (const fb::Portal* portal : *manifest.portals()) {
+      catalog.portals.push_back(
+          {text_of(portal->name()),
+           portal->zone_a(),
+           portal->zone_b(),
+           {{portal->p()->x(), portal->p()->y()}, {portal->q()->x(), portal->q()->y()}}});
+    }
+  }
+  return catalog;
+}
+
+ZoneId Catalog::find(std::string_view name) const noexcept {
+  const auto found = std::lower_bound(
+      zones.begin(), zones.end(), name,
+      [](const CatalogZone& zone, std::string_view wanted) { return zone.name < wanted; });
+  if (found == zones.end() || found->name != name) return kNoZone;
+  return static_cast<ZoneId>(found - zones.begin());
+}
+
+}  // namespace zonepack

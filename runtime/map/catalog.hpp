@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "platform/base/result.hpp"
+#include "runtime/pack_format/accounting.hpp"
+#include "runtime/pack_format/checksum.hpp"
+#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/ids.hpp"
+
+namespace zonepack {
+
+struct CatalogZone {
+  std::string name;
+  std::string zone_type;
+  Polygon polygon;
+  std::uint32_t signatures = 0;
+  std::uint32_t slots = 0;     // for the payload the catalog was opened for
+  ByteCount stored_bytes = 0;  // to read for that payload
+  ByteCount decoded_bytes = 0;
+  std::string pack;  // file name in the map's folder
+  Digest32 pack_digest{};
+};
+
+struct CatalogPortal {
+  std::string name;
+  ZoneId zone_a = kNoZone;
+  ZoneId zone_b = kNoZone;
+  Segment2 segment;
+};
+
+// What exists: the zones of a map and what each costs for a payload, read once from the manifest.
+// ZoneIds are places in `zones`, sorted by name. Immutable after open(); may be read by any thread.
+struct Catalog {
+  std::string folder;
+  Digest16 lineage{};
+  Digest32 version{};       // digest of the manifest
+  PayloadMask payload = 0;  // what will be loaded
+  std::vector<CatalogZone> zones;
+  std::vector<CatalogPortal> portals;
+  ByteCount fixed_bytes = 0;  // charged beside slots (accounting.hpp)
+  SmallestBudget smallest;    // without pins
+
+  // Reads FOLDER/manifest.zpm and checks it whole. kNotFound, kIo and what check_manifest says.
+  static Result<Catalog> open(const std::string& folder, PayloadMask payload);
+
+  // kNoZone for a name that is not there.
+  ZoneId find(std::string_view name) const noexcept;
+};
+
+}  // namespace zonepack

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/map/loader.hpp"
+
+#include <array>
+
+namespace zonepack {
+
+Result<PackReader> PackReader::open(const Catalog& catalog, ZoneId zone) {
+  const CatalogZone& wanted = catalog.zones[zone];
+  Result<StorageFile> file = StorageFile::open(catalog.folder + "/" + wanted.pack);
+  if (!file) return file.error();
+  if (file->size() < sizeof(PackHeader) + sizeof(PackTail)) {
+    return {ErrorCode::kTruncated, static_cast<std::int64_t>(file->size())};
+  }
+  std::array<std::byte, sizeof(PackTail)> last;
+  if (const auto read = file->read_at(file->size() - last.size(), last); !read) return read.error();
+  const Result<PackTail> tail = check_tail(last, file->size());
+  if (!tail) return tail.error();
+  if (tail->digest != wanted.pack_digest) return ErrorCode::kMismatch;
+  std::array<std::byte, sizeof(PackHeader)> header;
+  if (const auto read = file->read_at(0, header); !read) return read.error();
+
+  PackReader reader(std::move(*file), std::vector<std::uint64_t>((tail->index_size + 7) / 8));
+  const auto index = std::as_writable_bytes(std::span(reader.words_)).first(tail->index_size);
+  if (const auto read = reader.file_.read_at(tail->index_offset, index); !read) return read.error();
+  const Result<const fb::PackIndex*> checked = check_index(header, index, *tail);
+  if (!checked) return checked.error();
+  reader.index_ = *checked;
+  if (reader.index_->zone()->str() != wanted.name ||
+      reader.index_->signatures() != wanted.signatures ||
+      slots_needed(*reader.index_, catalog.payload) != wanted.slots) {
+    return ErrorCode::kMismatch;
+  }
+  return reader;
+}
+
+Result<ZoneLoad> ZoneLoad::begin(const Catalog& catalog, ZoneId zone,
+                                 std::span<std::byte* const> slots,
+                                 std::span<std::byte> read_buffer) {
+  Result<PackReader> pack = PackReader::open(catalog, zone);
+  if (!pack) return pack.error();
+  if (slots.size() < catalog.zones[zone].slots) {
+    return {ErrorCode::kNoRoom, catalog.zones[zone].slots};
+  }
+  const PayloadMask mask = payload_closure(catalog.payload, pack->index().grid_needs_scan());
+  return ZoneLoad(std::move(*pack), mask, slots, read_buffer);
+}
+
+// Reads ahead as many wanted chunks as follow each other and fit the buffer.
+Result<ByteSpan> ZoneLoad::stored(const fb::ChunkEntry& entry) {
+  const std::uint64_t end = entry.offset() + entry.stored_size();
+  if (entry.offset() < buffered_from_ || end > buffered_to_) {
+    std::uint64_t to = end;
+    const auto& all = *pack_.index().chunks();
+    for (std::uint32_t i = next_ + 1; i < all.size() && wanted(*all.Get(i)); ++i) {
+      const std::uint64_t more = to + all.Get(i)->stored_size();
+      if (more - entry.offset() > buffer_.size()) break;
+      to = more;
+    }
+    const auto out = buffer_.first(to - entry.offset());
+    if (const auto read = pack_.file().read_at(entry.offset(), out); !read) return read.error();
+    buffered_from_ = entry.offset();
+    buffered_to_ = to;
+  }
+  return ByteSpan(buffer_.subspan(entry.offset() - buffered_from_, entry.stored_size()));
+}
+
+Result<bool> ZoneLoad::step() {
+  const auto& all = *pack_.index().chunks();
+  while (next_ < all.size() && !wanted(*all.Get(next_))) ++next_;
+  if (next_ == all.size()) return false;
+  const fb::ChunkEntry& entry = *all.Get(next_);
+  const Result<ByteSpan> bytes = stored(entry);
+  if (!bytes) return bytes.error();
+  const Placement::Place place = placement_.add(entry.decoded_size());
+  const Result<ByteSpan> chunk = decode_chunk(entry, *bytes, slots_[place.slot] + place.offset);
+  if (!chunk) return chunk.error();
+  chunks_.push_back({entry.kind(), *chunk});
+  stored_bytes_ += entry.stored_size();
+  ++next_;
+  return true;
+}
+
+}  // namespace zonepack

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "platform/base/byte_count.hpp"
+#include "runtime/pack_format/ids.hpp"
+#include "runtime/pack_format/limits.hpp"
+#include "runtime/pack_format/manifest_file.hpp"
+
+// What a map costs in memory, counted the same way by the packer's plan and by the robot, so that a
+// budget which plan promises is a budget which the robot keeps.
+namespace zonepack {
+
+// Per item, what the runtime's own tables take; a test holds them against the real allocations.
+inline constexpr ByteCount kTableBytesPerZone = 512;  // catalog, residency, tracker, graph, strings
+inline constexpr ByteCount kTableBytesPerVertex = 32;
+inline constexpr ByteCount kTableBytesPerPortal = 192;
+inline constexpr ByteCount kTableBytesPerSlot = 96;  // chain, places of chunks
+inline constexpr ByteCount kTableBytesPerMap = 16 * kKiB;
+// Stored bytes of chunks on their way into slots; the index of the pack being read comes on top.
+inline constexpr ByteCount kReadBufferBytes = 64 * kKiB;
+inline constexpr ByteCount kIndexBytesPerChunk = 72;
+inline constexpr ByteCount kIndexBytesPerPack = 512;
+
+struct MapCosts {
+  ByteCount fixed_bytes = 0;              // beside slots and their tables
+  std::vector<std::uint32_t> zone_slots;  // by ZoneId, for the payload asked for
+};
+
+// Costs of a checked manifest when these kinds are loaded.
+MapCosts map_costs(const fb::Manifest& manifest, PayloadMask wanted);
+
+// Everything charged when `slots` slots exist.
+constexpr ByteCount charged_with(ByteCount fixed_bytes, std::uint64_t slots) noexcept {
+  return fixed_bytes + slots * (kSlotBytes + kTableBytesPerSlot);
+}
+
+// The most slots that a budget pays for beside what is fixed.
+constexpr std::uint64_t slots_within(ByteCount budget, ByteCount fixed_bytes) noexcept {
+  return budget < fixed_bytes ? 0 : (budget - fixed_bytes) / (kSlotBytes + kTableBytesPerSlot);
+}
+
+struct SmallestBudget {
+  ByteCount bytes = 0;
+  std::uint64_t slots = 0;
+  ZoneId zone_a = kNoZone;  // the zone and the neighbour that need most together
+  ZoneId zone_b = kNoZone;  // kNoZone: the largest zone has no neighbour that matters
+};
+
+// The smallest budget under which every zone fits together with any one neighbour, all pinned
+// zones, tables and read buffers.
+SmallestBudget smallest_budget(const fb::Manifest& manifest, const MapCosts& costs,
+                               std::span<const ZoneId> pinned);
+
+}  // namespace zonepack
