@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/zones/geojson.hpp"
+
+#include <iterator>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace zonepack::packer {
+namespace {
+
+using nlohmann::json;
+
+// Hands the text to the JSON parser and counts the lines that it has taken.
+class LineCountingIterator {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  LineCountingIterator(const char* at, std::size_t* line) : at_(at), line_(line) {}
+  reference operator*() const { return *at_; }
+  LineCountingIterator& operator++() {
+    if (*at_++ == '\n') ++*line_;
+    return *this;
+  }
+  LineCountingIterator operator++(int) {
+    LineCountingIterator before = *this;
+    ++*this;
+    return before;
+  }
+  friend bool operator==(const LineCountingIterator& a, const LineCountingIterator& b) {
+    return a.at_ == b.at_;
+  }
+  friend bool operator!=(const LineCountingIterator& a, const LineCountingIterator& b) {
+    return a.at_ != b.at_;
+  }
+
+ private:
+  const char* at_;
+  std::size_t* line_;
+};
+
+// Follows the parser: where each feature begins, and which keys stand twice.
+class Follower {
+ public:
+  Follower(const std::size_t& line, Findings& findings) : line_(line), findings_(findings) {}
+
+  bool operator()(int depth, json::parse_event_t event, const json& parsed) {
+    switch (event) {
+      case json::parse_event_t::object_start:
+        if (depth == 2 && section_ == "features") feature_lines_.push_back(line_);
+        keys_.emplace_back();
+        break;
+      case json::parse_event_t::object_end:
+        keys_.pop_back();
+        break;
+      case json::parse_event_t::key: {
+        const auto& key = parsed.get_ref<const std::string&>();
+        if (depth == 1) section_ = key;
+        if (!keys_.back().insert(key).second) report_twice(key);
+        break;
+      }
+      default:
+        break;
+    }
+    return true;
+  }
+
+  const std::vector<std::size_t>& feature_lines() const { return feature_lines_; }
+
+ private:
+  void report_twice(const std::string& key) {
+    std::optional<std::size_t> feature;
+    if (keys_.size() > 1 && section_ == "features" && !feature_lines_.empty()) {
+      feature = feature_lines_.size() - 1;
+    }
+    findings_.faults.push_back(
+        {feature, line_, "", "key \"" + key + "\" stands twice in one object; remove one"});
+  }
+
+  const std::size_t& line_;
+  Findings& findings_;
+  std::string section_;
+  std::vector<std::set<std::string>> keys_;
+  std::vector<std::size_t> feature_lines_;
+};
+
+// nlohmann's text without its "[json.exception.…]" mark and without the position, which we give.
+std::string plain_reason(const std::string& what) {
+  std::size_t from = what.find("] ");
+  from = from == std::string::npos ? 0 : from + 2;
+  if (const std::size_t column = what.find("column ", from); column != std::string::npos) {
+    return "column " + what.substr(column + 7);
+  }
+  return what.substr(from);
+}
+
+}  // namespace
+
+std::vector<Feature> read_features(std::string_view text, Findings& findings) {
+  const auto fault = [&](std::size_t line, std::string message) {
+    findings.faults.push_back({std::nullopt, line, "", std::move(message)});
+  };
+  std::size_t line = 1;
+  Follower follower(line, findings);
+  json root;
+  try {
+    root = json::parse(LineCountingIterator(text.data(), &line),
+                       LineCountingIterator(text.data() + text.size(), &line),
+                       [&](int depth, json::parse_event_t event, json& parsed) {
+                         return follower(depth, event, parsed);
+                       });
+  } catch (const json::parse_error& error) {
+    fault(line, "not valid JSON: " + plain_reason(error.what()));
+    return {};
+  } catch (const json::exception& error) {  // a number too large for a double
+    fault(line, "not usable: " + plain_reason(error.what()));
+    return {};
+  }
+  if (!root.is_object() || root.value("type", json()) != "FeatureCollection") {
+    fault(1,
+          "expected a GeoJSON object with \"type\": \"FeatureCollection\"; export the zones as "
+          "GeoJSON");
+    return {};
+  }
+  const auto list = root.find("features");
+  if (list == root.end() || !list->is_array()) {
+    fault(1, "expected \"features\": [ … ], the list of zones and portals");
+    return {};
+  }
+  std::vector<Feature> features;
+  std::size_t objects = 0;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    json& value = (*list)[i];
+    const std::size_t at = value.is_object() ? follower.feature_lines().at(objects++) : 0;
+    if (value.is_object() && value.value("type", json()) == "Feature") {
+      features.push_back({i, at, std::move(value)});
+    } else {
+      fault(at, "feature " + std::to_string(i) + " is not an object with \"type\": \"Feature\"");
+    }
+  }
+  return features;
+}
+
+}  // namespace zonepack::packer

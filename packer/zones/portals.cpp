@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/zones/portals.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "packer/zones/plane.hpp"
+#include "packer/zones/shared_border.hpp"
+#include "packer/zones/zone_file.hpp"
+#include "runtime/pack_format/limits.hpp"
+
+namespace zonepack::packer {
+namespace {
+
+class PortalPlacer {
+ public:
+  PortalPlacer(const Drawing& drawing, double snap_m, ZonePlan& plan, Findings& findings)
+      : drawing_(drawing), snap_m_(snap_m), plan_(plan), findings_(findings) {
+    for (std::uint32_t i = 0; i < plan.zones.size(); ++i) zone_at_[plan.zones[i].name] = i;
+    for (const DrawnZone& drawn : drawing.zones) drawn_names_.insert(drawn.zone.name);
+    for (const DrawnPortal& portal : drawing.portals) {
+      if (!portal.name.empty()) names_.emplace(portal.name, portal.feature);
+    }
+  }
+
+  void place(const DrawnPortal& drawn) {
+    drawn_ = &drawn;
+    if (!drawn.name.empty() && names_.at(drawn.name) != drawn.feature) {
+      fault("has the name of feature " + std::to_string(names_.at(drawn.name)) + "; rename one");
+    }
+    bool known = true;
+    for (const std::string& zone : drawn.zones) {
+      if (drawn_names_.contains(zone)) continue;
+      fault("names zone '" + zone + "', which is not in the file; correct the name in \"zones\"" +
+            similar_name(zone));
+      known = false;
+    }
+    if (drawn.zones[0] == drawn.zones[1]) {
+      fault("joins zone '" + drawn.zones[0] + "' to itself; name the zones on its two sides");
+      known = false;
+    }
+    if (!known) return;
+    const auto a = zone_at_.find(drawn.zones[0]), b = zone_at_.find(drawn.zones[1]);
+    if (a == zone_at_.end() || b == zone_at_.end()) return;  // the zone itself is faulty
+    if (const auto segment = on_border(a->second, b->second)) {
+      plan_.portals.push_back({fresh_name(), a->second, b->second, *segment});
+    }
+  }
+
+ private:
+  void fault(const std::string& message) {
+    const std::string feature = " (feature " + std::to_string(drawn_->feature) + ") ";
+    const std::string subject =
+        drawn_->name.empty()
+            ? "portal of '" + drawn_->zones[0] + "' and '" + drawn_->zones[1] + "'" + feature
+            : "portal '" + drawn_->name + "'" + feature;
+    findings_.faults.push_back({drawn_->feature, drawn_->line, drawn_->name, subject + message});
+  }
+
+  std::string similar_name(const std::string& wanted) const {
+    const auto folded = [](std::string text) {
+      std::erase_if(text, [](char c) { return c == ' ' || c == '-' || c == '_'; });
+      for (char& c : text) {
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+      }
+      return text;
+    };
+    for (const std::string& name : drawn_names_) {
+      if (folded(name) == folded(wanted)) return " (is it '" + name + "'?)";
+    }
+    return "";
+  }
+
+  std::string fresh_name() {
+    if (!drawn_->name.empty()) return drawn_->name;
+    for (std::size_t number = 1;; ++number) {
+      std::string name = portal_name(drawn_->zones[0], drawn_->zones[1], number);
+      if (names_.emplace(name, drawn_->feature).second) return name;
+    }
+  }
+
+  std::optional<Segment2> on_border(std::uint32_t a, std::uint32_t b) {
+    const std::string pair = "'" + plan_.zones[a].name + "' and '" + plan_.zones[b].name + "'";
+    const std::vector<Segment2> border = shared_borders(
+        plan_.zones[a].polygon, plan_.zones[b].polygon, 2 * snap_m_ + kBorderTolerance_m, 0);
+    if (border.empty()) {
+      fault("joins " + pair + ", which share no border: their outlines stay more than " +
+            number_text(2 * snap_m_) +
+            " m apart; draw the outlines up to each other, correct \"zones\", or raise --snap");
+      return std::nullopt;
+    }
+    Segment2 moved;
+    for (auto [from, to] :
+         {std::pair{&drawn_->segment.p, &moved.p}, std::pair{&drawn_->segment.q, &moved.q}}) {
+      *to = nearest_point(border, *from).value();
+      const double off = distance_m(*from, *to);
+      if (off > snap_m_ + kBorderTolerance_m) {
+        fault("is off the border: its end " + point_text(*from) + " stands " + number_text(off) +
+              " m off the border of " + pair + ", at most " + number_text(snap_m_) +
+              " m is allowed; move it onto the border or raise --snap");
+        return std::nullopt;
+      }
+    }
+    if (distance_m(moved.p, moved.q) <= kBorderTolerance_m) {
+      fault("stands across the border of " + pair + " at " + point_text(moved.p) +
+            " and has no length along it; draw it along the border");
+      return std::nullopt;
+    }
+    return moved;
+  }
+
+  const Drawing& drawing_;
+  const double snap_m_;
+  ZonePlan& plan_;
+  Findings& findings_;
+  std::map<std::string, std::uint32_t> zone_at_;
+  std::set<std::string> drawn_names_;
+  std::map<std::string, std::size_t> names_;  // of portals, with the feature that has each first
+  const DrawnPortal* drawn_ = nullptr;
+};
+
+}  // namespace
+
+void place_portals(const Drawing& drawing, double snap_m, ZonePlan& plan, Findings& findings) {
+  PortalPlacer placer(drawing, snap_m, plan, findings);
+  for (const DrawnPortal& portal : drawing.portals) placer.place(portal);
+}
+
+void find_portals(double snap_m, ZonePlan& plan) {
+  for (std::uint32_t a = 0; a < plan.zones.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < plan.zones.size(); ++b) {
+      const PlannedZone &zone_a = plan.zones[a], &zone_b = plan.zones[b];
+      if (!share_a_height(zone_a, zone_b)) continue;
+      std::size_t number = 0;
+      for (const Segment2& piece :
+           shared_borders(zone_a.polygon, zone_b.polygon, snap_m, kMinFoundPortal_m)) {
+        plan.portals.push_back({portal_name(zone_a.name, zone_b.name, ++number), a, b, piece});
+      }
+    }
+  }
+  plan.portals_found = true;
+}
+
+}  // namespace zonepack::packer

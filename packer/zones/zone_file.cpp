@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/zones/zone_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "packer/zones/drawn.hpp"
+#include "packer/zones/geojson.hpp"
+#include "packer/zones/portals.hpp"
+#include "packer/zones/zone_checks.hpp"
+#include "runtime/pack_format/limits.hpp"
+
+namespace zonepack::packer {
+namespace {
+
+std::string read_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (file) text << file.rdbuf();
+  if (!file || !text) {
+    throw std::runtime_error(path + ": cannot read the zone file: " +
+                             (errno != 0 ? std::strerror(errno) : "it is empty") +
+                             "; expected GeoJSON");
+  }
+  return text.str();
+}
+
+void add_sound_zones(const Drawing& drawing, ZonePlan& plan) {
+  std::set<std::string> names;
+  for (const DrawnZone& drawn : drawing.zones) {
+    if (drawn.sound && !drawn.zone.name.empty() && names.insert(drawn.zone.name).second) {
+      plan.zones.push_back(drawn.zone);
+    }
+  }
+  sort_by_name(plan);
+}
+
+void warn_of_unreachable(const ZonePlan& plan, const Drawing& drawing, Findings& findings) {
+  for (const std::uint32_t zone : unreachable_zones(plan)) {
+    const std::string& name = plan.zones[zone].name;
+    Finding warning{
+        std::nullopt, 0, name,
+        "zone '" + name +
+            "' is unreachable: no portals join it to the other zones; draw a portal, or "
+            "let its border meet its neighbour's"};
+    for (const DrawnZone& drawn : drawing.zones) {
+      if (drawn.zone.name != name) continue;
+      warning.feature = drawn.feature;
+      warning.line = drawn.line;
+      break;
+    }
+    findings.warnings.push_back(std::move(warning));
+  }
+}
+
+}  // namespace
+
+ZoneFile parse_zone_file(std::string_view text, double snap_m) {
+  ZoneFile result;
+  ZonePlan& plan = result.plan;
+  Findings& findings = result.findings;
+  const Drawing drawing = read_drawing(read_features(text, findings), findings);
+  if (drawing.zones.empty() && findings.faults.empty()) {
+    findings.faults.push_back(
+        {std::nullopt, 0, "", "no zones: expected at least one Polygon feature with a name"});
+  }
+  check_zones_together(drawing, findings);
+  add_sound_zones(drawing, plan);
+  if (drawing.portal_features > 0) {
+    place_portals(drawing, snap_m, plan, findings);
+  } else {
+    find_portals(snap_m, plan);
+  }
+  sort_by_name(plan);
+  if (findings.faults.empty()) warn_of_unreachable(plan, drawing, findings);
+  return result;
+}
+
+ZoneFile check_zone_file(const std::string& path, double snap_m) {
+  return parse_zone_file(read_text(path), snap_m);
+}
+
+ZoneFile load_zone_file(const std::string& path, double snap_m) {
+  ZoneFile file = check_zone_file(path, snap_m);
+  if (!file.findings.faults.empty()) {
+    throw std::runtime_error(describe_faults(file.findings, path));
+  }
+  return file;
+}
+
+std::string why_unfit_name(std::string_view name) {
+  if (name.empty()) return "it is empty";
+  if (name.size() > kMaxNameBytes) {
+    return "it is " + std::to_string(name.size()) + " bytes long, at most " +
+           std::to_string(kMaxNameBytes) + " are allowed";
+  }
+  if (name.front() == '.') return "it begins with a dot";
+  if (name.front() == ' ' || name.back() == ' ') return "it begins or ends with a blank";
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const auto c = static_cast<unsigned char>(name[i]);
+    const auto after = static_cast<unsigned char>(i + 1 < name.size() ? name[i + 1] : 0);
+    if (c == '/' || c == '\\' || c == '"') {
+      return std::string("it holds ") + name[i] + ", which file names and event logs cannot carry";
+    }
+    if (c < 0x20 || c == 0x7F || (c == 0xC2 && after >= 0x80 && after < 0xA0)) {
+      return "it holds a control character";
+    }
+  }
+  return "";
+}
+
+}  // namespace zonepack::packer

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/pack_format/geometry.hpp"
+
+// What a user has drawn: the zones of a building and the portals between them. Map frame, metres.
+namespace zonepack::packer {
+
+struct PlannedZone {
+  std::string name;    // unique; see why_unfit_name()
+  std::string parent;  // the zone this is a part of when it was split; else empty
+  std::string zone_type, label, layer, floor;  // empty when the file has none
+  // Only signatures with z_min_m <= z < z_max_m belong to the zone; nullopt: no bound.
+  std::optional<double> z_min_m, z_max_m;
+  Polygon polygon;  // interior on the left of every edge: outer counter-clockwise, holes clockwise
+};
+
+struct PlannedPortal {
+  std::string name;                      // unique
+  std::uint32_t zone_a = 0, zone_b = 0;  // places in ZonePlan::zones; different
+  Segment2 segment;                      // on the shared border
+  friend bool operator==(const PlannedPortal& a, const PlannedPortal& b) {
+    return a.name == b.name && a.zone_a == b.zone_a && a.zone_b == b.zone_b &&
+           a.segment.p == b.segment.p && a.segment.q == b.segment.q;
+  }
+};
+
+struct ZonePlan {
+  std::vector<PlannedZone> zones;      // sorted by name, byte order
+  std::vector<PlannedPortal> portals;  // sorted by name, byte order
+  bool portals_found = false;          // the file had none: found from shared borders
+};
+
+// Whether two zones can both hold a point of one height.
+bool share_a_height(const PlannedZone& a, const PlannedZone& b) noexcept;
+
+// Sorts zones and portals by name and lets the portals follow their zones.
+void sort_by_name(ZonePlan& plan);
+
+// "A-B" for the first portal between two zones, "A-B.2" for the second.
+std::string portal_name(const std::string& zone_a, const std::string& zone_b, std::size_t number);
+
+}  // namespace zonepack::packer
