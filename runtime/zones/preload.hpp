@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "runtime/odometry/pose.hpp"
+#include "runtime/pack_format/ids.hpp"
+#include "runtime/zones/zone_graph.hpp"
+
+namespace zonepack {
+
+// A zone the robot is about to enter.
+struct Approach {
+  ZoneId zone = kNoZone;
+  double entry_s = 0;        // when last seen, from then; 0: it may be in there already
+  std::int64_t seen_ns = 0;  // when the path last led there
+};
+
+struct PreloadSettings {
+  double margin_m = 0.3;           // beside three sigma: how far ahead a zone must be ready
+  double motion_average_s = 0.15;  // over which speed and yaw rate are smoothed
+  double standing_m_s = 0.02;      // slower than this is standing or turning in place
+  double hold_s = 0.3;             // an approach not seen for so long is given up
+  double most_turn_rad = 1.5;      // an arc is trusted so far; then the path goes on straight
+  double most_reach_m = 20;        // and no path is followed farther
+};
+
+// Which zones are being approached: those whose portal the robot's path crosses within the horizon
+//
+//   time to load the zone + (3 sigma + margin_m) / speed,
+//
+// where the path is the arc of the present speed and yaw rate, forwards or backwards; and those
+// whose portal is within three sigma, where the robot may be on the other side already. So a door
+// that is merely passed is not approached. While the robot stands or turns in place nothing new is
+// approached and nothing given up.
+//
+// Real-time: no allocation; a cycle tests at most kMaxSteps + kMaxHops pieces of path against the
+// portals of one zone each (at most kMaxPortalsPerZone).   Threads: owned by the control thread.
+class Preload {
+ public:
+  static constexpr std::size_t kMaxApproaches = 8;
+  static constexpr int kMaxSteps = 32;
+  static constexpr int kMaxHops = 3;
+
+  // load_s: for every zone the estimated seconds from wish to use; must outlive this object.
+  Preload(const ZoneGraph& graph, std::span<const float> load_s,
+          const PreloadSettings& settings = {});
+
+  // Takes the pose of this cycle (valid, not older than the last) and the zone that holds it.
+  void update(const PoseEstimate& pose, ZoneId zone) noexcept;
+
+  // Forgets approaches and motion, as after re-initialisation.
+  void restart() noexcept;
+
+  // Soonest entry first, then lowest ZoneId; the zone given to update() is never among them.
+  std::span<const Approach> approaches() const noexcept { return {held_.data(), count_}; }
+
+ private:
+  void smooth(const PoseEstimate& pose) noexcept;
+  void follow_path(const PoseEstimate& pose, ZoneId zone, double margin_m) noexcept;
+  const Exit* exit_on(ZoneId zone, Point2 from, Point2 to, double slack_m) const noexcept;
+  void see(ZoneId zone, double entry_s, std::int64_t t_ns) noexcept;
+
+  const ZoneGraph& graph_;
+  std::span<const float> load_s_;
+  float longest_load_s_ = 0;
+  PreloadSettings settings_;
+  double speed_m_s_ = 0;
+  double yaw_rate_rad_s_ = 0;
+  std::int64_t last_ns_ = 0;
+  bool moved_ = false;
+  std::array<Approach, kMaxApproaches> held_{};
+  std::size_t count_ = 0;
+};
+
+}  // namespace zonepack

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/zones/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace zonepack {
+namespace {
+
+// Portal ends may stand a little off the borders that they join.
+constexpr double kPortalSlack_m = 0.2;
+
+}  // namespace
+
+double position_sigma_m(const PoseEstimate& pose) noexcept {
+  const double xx = pose.covariance[0];
+  const double xy = pose.covariance[1];
+  const double yy = pose.covariance[4];
+  // The larger eigenvalue of [xx xy; xy yy].
+  const double half_difference = (xx - yy) / 2;
+  const double spread = std::sqrt(half_difference * half_difference + xy * xy);
+  return std::sqrt(std::max(0.0, (xx + yy) / 2 + spread));
+}
+
+ZoneTracker::ZoneTracker(const ZoneGraph& graph, const TrackerSettings& settings)
+    : graph_(graph), settings_(settings) {}
+
+bool ZoneTracker::portal_leads_to(ZoneId to, Point2 point, double reach_m) const noexcept {
+  const auto exits = graph_.exits(zone_);
+  return std::any_of(exits.begin(), exits.end(), [&](const Exit& exit) {
+    return exit.to == to && distance_m(exit.segment, point) <= reach_m;
+  });
+}
+
+bool ZoneTracker::update(const PoseEstimate& pose) noexcept {
+  if (!pose.valid) return false;
+  const Point2 point{pose.T_map_base.x_m, pose.T_map_base.y_m};
+  const double sigma_m = position_sigma_m(pose);
+  const ZoneId before = zone_;
+  if (restart_ || zone_ == kNoZone) {
+    const ZoneId start = graph_.zone_near(point, settings_.start_radius_m + 3 * sigma_m);
+    if (start != kNoZone) {
+      zone_ = start;
+      restart_ = false;
+    }
+    pose_zone_ = zone_;
+    return zone_ != before;
+  }
+  pose_zone_ = zone_;
+  if (side_of(graph_.polygon(zone_), point) != Side::kOutside) return false;
+  const ZoneId other = graph_.zone_at(point);
+  if (other == kNoZone) return false;
+  pose_zone_ = other;
+  const double depth_m = graph_.depth_m(other, point);
+  const bool through_portal = portal_leads_to(other, point, depth_m + 3 * sigma_m + kPortalSlack_m);
+  const double needed_m = through_portal
+                              ? std::clamp(sigma_m, settings_.least_depth_m, settings_.most_depth_m)
+                              : settings_.wall_depth_m + 3 * sigma_m;
+  if (depth_m >= needed_m) zone_ = other;
+  return zone_ != before;
+}
+
+}  // namespace zonepack
