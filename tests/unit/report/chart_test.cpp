@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "runtime/report/chart_scale.hpp"
-#include "tests/unit/report/xml_check.hpp"
+#include "tests/support/xml_check.hpp"
 
 namespace zonepack::report {
 namespace {

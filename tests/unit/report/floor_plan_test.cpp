@@ -8,7 +8,7 @@
 
 #include "runtime/report/plan_label.hpp"
 #include "runtime/report/plan_view.hpp"
-#include "tests/unit/report/xml_check.hpp"
+#include "tests/support/xml_check.hpp"
 
 namespace zonepack::report {
 namespace {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "tests/unit/report/xml_check.hpp"
+#include "tests/support/xml_check.hpp"
 
 namespace zonepack::report {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "tests/unit/report/xml_check.hpp"
+#include "tests/support/xml_check.hpp"
 
 namespace zonepack::report {
 namespace {

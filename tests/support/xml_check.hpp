@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace zonepack::report {
+namespace zonepack {
 
 // A strict little XML reader: says what is wrong with a document, or nothing. Knows elements,
 // quoted attributes, the five named entities and character references; all that reports use.
@@ -114,4 +114,4 @@ inline std::size_t count_of(std::string_view text, std::string_view part) {
   return count;
 }
 
-}  // namespace zonepack::report
+}  // namespace zonepack

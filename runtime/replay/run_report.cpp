@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/replay/run_report.hpp"
+
+#include <algorithm>
+
+#include "runtime/replay/run_figures.hpp"
+#include "runtime/report/format.hpp"
+
+namespace zonepack {
+namespace {
+
+using report::Fact;
+using report::format_bytes;
+using report::format_count;
+using report::format_number;
+using report::format_seconds;
+using report::Report;
+
+std::string bytes_text(ByteCount bytes) { return format_bytes(static_cast<double>(bytes)); }
+
+std::string percent(ByteCount part, ByteCount whole) {
+  return format_number(100 * static_cast<double>(part) / static_cast<double>(whole), 1) + " %";
+}
+
+std::string counted(std::uint64_t count, const char* one, const char* many) {
+  return format_count(count) + " " + (count == 1 ? one : many);
+}
+
+std::string headline(const RunSummary& s) {
+  std::string text = counted(s.signatures_loaded, "signature", "signatures") + " loaded, " +
+                     format_count(s.signatures_unloaded) + " unloaded. ";
+  if (s.budget_violations > 0) {
+    return text + "The limit was exceeded in " + counted(s.budget_violations, "cycle.", "cycles.");
+  }
+  text += "The map never took more than " + bytes_text(s.peak_charged_bytes);
+  if (s.budget_bytes > 0) {
+    text += " of its budget of " + bytes_text(s.budget_bytes) + " (" +
+            percent(s.peak_charged_bytes, s.budget_bytes) + ")";
+  }
+  return text + (s.zone_absent_s > 0 ? ", but the robot's own zone was missing for " +
+                                           format_seconds(s.zone_absent_s) + "."
+                                     : ", and the robot's own zone was always in memory.");
+}
+
+std::vector<Fact> facts_of(const RunReportInput& input) {
+  const RunSummary& s = input.summary;
+  std::vector<Fact> facts = {
+      {"budget", bytes_text(s.budget_bytes), format_count(s.budget_bytes) + " bytes"},
+      {"most charged", bytes_text(s.peak_charged_bytes),
+       format_count(s.peak_charged_bytes) + " bytes"},
+      {"over a limit", counted(s.budget_violations, "cycle", "cycles"),
+       "of " + format_count(s.cycles), s.budget_violations > 0},
+      {"most signatures", format_count(s.peak_signatures),
+       s.max_signatures > 0 ? "limit " + format_count(s.max_signatures)
+                            : "no limit on their number"},
+      {"zones loaded, unloaded",
+       format_count(s.zones_loaded) + ", " + format_count(s.zones_unloaded),
+       bytes_text(s.bytes_loaded) + " loaded"},
+      {"own zone not in memory", format_seconds(s.zone_absent_s),
+       "after the start of " + format_seconds(s.start_s), s.zone_absent_s > 0},
+      {"waiting for room", format_seconds(s.blocked_s), "a wanted zone did not fit"},
+      {"zone switches", format_count(s.zone_switches),
+       format_seconds(s.wrong_zone_s) + " in a wrong zone"},
+  };
+  if (s.pose_error_m) {
+    facts.push_back({"pose error, median", format_number(s.pose_error_m->p50, 3) + " m",
+                     "95 %: " + format_number(s.pose_error_m->p95, 3) +
+                         " m, most: " + format_number(s.pose_error_m->max, 3) + " m"});
+  }
+  facts.push_back({"corrections used", format_count(s.corrections_used),
+                   format_count(s.corrections_rejected) + " rejected"});
+  if (!input.baseline.empty()) {
+    const BaselineRow& last = input.baseline.back();
+    facts.push_back({"RTAB-Map loaded, unloaded",
+                     format_number(last.loaded, 0) + ", " + format_number(last.unloaded, 0),
+                     "signatures, on the same run"});
+  }
+  return facts;
+}
+
+std::string with_baseline(std::string caption, const RunReportInput& input, const char* more) {
+  if (!input.baseline.empty()) caption.append(" ").append(more);
+  return caption;
+}
+
+bool has_truth(const RunTrace& trace) {
+  return std::ranges::any_of(trace.samples, &TraceSample::has_truth);
+}
+
+void add_figures(const RunReportInput& input, Report& page) {
+  const RunTrace& trace = input.trace;
+  const bool truth = has_truth(trace);
+  page.figures.push_back(
+      {"The route, from above",
+       std::string("The way the robot believed to drive, from the circle to the square, in the "
+                   "colour of the zone it believed to be in; zones it never entered are grey.") +
+           (truth ? " Dashed: the true way." : ""),
+       report::draw_floor_plan(route_plan(trace, zone_colors(trace)))});
+  page.figures.push_back(
+      {"Signatures loaded and unloaded since the start",
+       with_baseline("Each step is a zone that was loaded or unloaded as a whole; the band below "
+                     "names the zone the robot was in. The fewer the better: every step is reading "
+                     "and decoding.",
+                     input, "RTAB-Map moves single signatures in and out all the time."),
+       report::draw_chart(loading_chart(trace, input.baseline))});
+  page.figures.push_back(
+      {"Signatures in memory",
+       with_baseline("Those resident and those being loaded; together they may not pass the limit.",
+                     input,
+                     "RTAB-Map starts with the whole map and unloads until its threshold holds."),
+       report::draw_chart(signatures_chart(trace, input.baseline))});
+  page.figures.push_back(
+      {"Bytes charged",
+       "All memory that grows with the map, in the units it is handed out in; a zone counts from "
+       "the moment its load begins. The line may touch the budget and never cross it.",
+       report::draw_chart(bytes_chart(trace))});
+  if (!truth) return;
+  page.figures.push_back(
+      {"Error of the pose",
+       "How far the believed position was from the true one. Corrections pull it "
+       "down, wheel slip and late or wrong corrections push it up.",
+       report::draw_chart(pose_error_chart(trace))});
+}
+
+// Seconds spent in every zone, as the tracker saw it.
+std::vector<double> stays_s(const RunTrace& trace) {
+  std::vector<double> stays(trace.zones.size(), 0);
+  for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+    const TraceSample& s = trace.samples[i];
+    const double until = i + 1 < trace.samples.size() ? trace.samples[i + 1].t_s : trace.duration_s;
+    if (s.tracked_zone < stays.size()) stays[s.tracked_zone] += until - s.t_s;
+  }
+  return stays;
+}
+
+void add_zone_table(const RunTrace& trace, Report& page) {
+  report::Table table{
+      "Zones visited",
+      "What each zone charges while it is in memory.",
+      {{"Zone"}, {"Type"}, {"Signatures", true}, {"Charged bytes", true}, {"Time inside", true}},
+      {}};
+  const std::vector<double> stays = stays_s(trace);
+  for (std::size_t i = 0; i < trace.zones.size(); ++i) {
+    const TraceZone& zone = trace.zones[i];
+    if (stays[i] <= 0) continue;
+    table.rows.push_back({zone.name, zone.zone_type, format_count(zone.signatures),
+                          format_count(zone.charged_bytes), format_seconds(stays[i])});
+  }
+  if (!table.rows.empty()) page.tables.push_back(std::move(table));
+}
+
+}  // namespace
+
+Report make_run_report(const RunReportInput& input) {
+  Report page;
+  page.title = "Replay of " + input.recording;
+  page.headline = headline(input.summary);
+  page.facts = facts_of(input);
+  add_figures(input, page);
+  add_zone_table(input.trace, page);
+  page.origin = "Map " + input.map + ", " + format_count(input.summary.cycles) + " cycles, " +
+                format_count(input.summary.can_frames) + " CAN frames (" +
+                format_count(input.summary.can_rejected) + " rejected) in " +
+                format_seconds(input.trace.duration_s) + ". Event log " +
+                input.summary.event_log_hash + ".";
+  return page;
+}
+
+}  // namespace zonepack

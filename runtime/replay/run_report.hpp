@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/replay/baseline.hpp"
+#include "runtime/replay/run_summary.hpp"
+#include "runtime/replay/run_trace.hpp"
+#include "runtime/report/report.hpp"
+
+namespace zonepack {
+
+// A replay as a report. Over time: signatures loaded and unloaded, signatures and bytes in memory
+// against their limits, the error of the pose; from above: the route coloured by zone. With a
+// baseline, RTAB-Map's own curves beside ours; with truth, the true route and the error.
+struct RunReportInput {
+  std::string map;  // as given by the user
+  std::string recording;
+  const RunSummary& summary;
+  const RunTrace& trace;
+  const std::vector<BaselineRow>& baseline;  // empty: none
+};
+
+report::Report make_run_report(const RunReportInput& input);
+
+}  // namespace zonepack
