@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "runtime/odometry/det_math.hpp"
-#include "runtime/zones/tracker.hpp"
+#include "runtime/odometry/se2.hpp"
 
 namespace zonepack {
 namespace {
@@ -74,7 +74,7 @@ void Preload::update(const PoseEstimate& pose, ZoneId zone) noexcept {
   if (!pose.valid || zone == kNoZone) return;
   smooth(pose);
   const Point2 point{pose.T_map_base.x_m, pose.T_map_base.y_m};
-  const double three_sigma_m = 3 * position_sigma_m(pose);
+  const double three_sigma_m = 3 * position_sigma_m(pose.covariance);
   for (const Exit& exit : graph_.exits(zone)) {
     if (distance_m(exit.segment, point) <= three_sigma_m) see(exit.to, 0, pose.t_ns);
   }

@@ -2,7 +2,8 @@
 #include "runtime/zones/tracker.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "runtime/odometry/se2.hpp"
 
 namespace zonepack {
 namespace {
@@ -11,16 +12,6 @@ namespace {
 constexpr double kPortalSlack_m = 0.2;
 
 }  // namespace
-
-double position_sigma_m(const PoseEstimate& pose) noexcept {
-  const double xx = pose.covariance[0];
-  const double xy = pose.covariance[1];
-  const double yy = pose.covariance[4];
-  // The larger eigenvalue of [xx xy; xy yy].
-  const double half_difference = (xx - yy) / 2;
-  const double spread = std::sqrt(half_difference * half_difference + xy * xy);
-  return std::sqrt(std::max(0.0, (xx + yy) / 2 + spread));
-}
 
 ZoneTracker::ZoneTracker(const ZoneGraph& graph, const TrackerSettings& settings)
     : graph_(graph), settings_(settings) {}
@@ -35,7 +26,7 @@ bool ZoneTracker::portal_leads_to(ZoneId to, Point2 point, double reach_m) const
 bool ZoneTracker::update(const PoseEstimate& pose) noexcept {
   if (!pose.valid) return false;
   const Point2 point{pose.T_map_base.x_m, pose.T_map_base.y_m};
-  const double sigma_m = position_sigma_m(pose);
+  const double sigma_m = position_sigma_m(pose.covariance);
   const ZoneId before = zone_;
   if (restart_ || zone_ == kNoZone) {
     const ZoneId start = graph_.zone_near(point, settings_.start_radius_m + 3 * sigma_m);

@@ -7,9 +7,6 @@
 
 namespace zonepack {
 
-// The largest standard deviation of the position over all directions in the plane, metres.
-double position_sigma_m(const PoseEstimate& pose) noexcept;
-
 struct TrackerSettings {
   // How deep the pose must be in another zone before it counts, so that noise on a border does not
   // switch to and fro: one sigma within these limits, where a portal leads from the zone the robot

@@ -23,7 +23,8 @@ inline ZoneGraph three_rooms() {
 inline PoseEstimate pose_at(double x_m, double y_m, double yaw_rad = 0, double sigma_m = 0.03) {
   PoseEstimate pose;
   pose.T_map_base = {x_m, y_m, yaw_rad};
-  pose.covariance = {sigma_m * sigma_m, 0, 0, 0, sigma_m * sigma_m, 0, 0, 0, 1e-4};
+  pose.covariance.xx = pose.covariance.yy = sigma_m * sigma_m;
+  pose.covariance.yaw_yaw = 1e-4;
   pose.valid = true;
   pose.trusted = true;
   return pose;

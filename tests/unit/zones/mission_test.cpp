@@ -107,15 +107,8 @@ Outcome drive(const Variation& variation) {
         truth.x_m + error_x, truth.y_m + error_y,
         wrap_angle(a.pose.yaw_rad + part * wrap_angle(b.pose.yaw_rad - a.pose.yaw_rad) +
                    0.01 * normal(random))};
-    pose.covariance = {variation.noise_m * variation.noise_m,
-                       0,
-                       0,
-                       0,
-                       variation.noise_m * variation.noise_m,
-                       0,
-                       0,
-                       0,
-                       1e-4};
+    pose.covariance.xx = pose.covariance.yy = variation.noise_m * variation.noise_m;
+    pose.covariance.yaw_yaw = 1e-4;
     pose.speed_m_s = a.speed_m_s + 0.03 * normal(random);
     pose.yaw_rate_rad_s = a.yaw_rate_rad_s + 0.08 * normal(random);
     pose.valid = pose.trusted = true;

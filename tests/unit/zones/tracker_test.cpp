@@ -80,12 +80,5 @@ TEST_F(Tracker, BelievesThePoseAloneAfterARestart) {
   EXPECT_EQ(tracker.zone(), 2u);
 }
 
-TEST(PositionSigma, IsThatOfTheWorstDirection) {
-  PoseEstimate pose;
-  // Eigenvalues of [2.5 1.5; 1.5 2.5]: 4 and 1.
-  pose.covariance = {2.5, 1.5, 0, 1.5, 2.5, 0, 0, 0, 1};
-  EXPECT_DOUBLE_EQ(position_sigma_m(pose), 2);
-}
-
 }  // namespace
 }  // namespace zonepack
