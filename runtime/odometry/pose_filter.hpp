@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "runtime/odometry/odometry_history.hpp"
 #include "runtime/odometry/pose.hpp"
 #include "runtime/odometry/se2.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
@@ -50,6 +50,8 @@ struct PoseFilterSettings {
   double start_sigma_rad = 0.2;
   double drift_sigma_m_per_sqrt_s = 0.3;  // growth while odometry is stale
   double drift_sigma_rad_per_sqrt_s = 0.3;
+  double speed_filter_s = 0.1;  // time constant of the speeds in the estimate
+  double extrapolate_s = 0.1;   // how far the newest increment is carried on at most
 };
 
 struct PoseFilterCounters {
@@ -95,7 +97,42 @@ class PoseFilter {
   // All places the robot may be, best first: one when trusted, none before anything is known.
   std::span<const PoseHypothesis> hypotheses() const noexcept;
 
-  const PoseFilterCounters& counters() const noexcept;
+  const PoseFilterCounters& counters() const noexcept { return counters_; }
+
+ private:
+  // One place the robot may be: fixes that agree with each other.
+  struct Candidate {
+    std::uint64_t anchor = 0;  // entry of the history at which at_anchor holds
+    UncertainPose at_anchor;
+    UncertainPose now;  // at the newest entry
+    std::uint32_t fixes = 0;
+    bool near_guess = false;  // its first fix lies within the gate of the start pose
+  };
+
+  bool is_plausible(const PoseCorrection& fix) const noexcept;
+  UncertainPose measured(const PoseCorrection& fix) const noexcept;
+  UncertainPose motion_since_newest(double seconds) const noexcept;
+  void append(std::int64_t t_ns, const UncertainPose& step) noexcept;
+  CorrectionVerdict count(CorrectionVerdict verdict) noexcept;
+  CorrectionVerdict place(const UncertainPose& fix, std::uint64_t index) noexcept;
+  CorrectionVerdict support(const UncertainPose& fix, std::uint64_t index) noexcept;
+  void adopt(const Candidate& candidate) noexcept;
+  Candidate& new_candidate() noexcept;
+  int rank(const Candidate& candidate) const noexcept;
+  void list_hypotheses() noexcept;
+
+  PoseFilterSettings settings_;
+  OdometryHistory history_;
+  std::uint64_t valid_from_ = 0;  // when trusted: the first entry whose state is the filter's
+  bool trusted_ = false;
+  // Untrusted: the hypotheses. Trusted: runs of rejected fixes that agree.
+  std::array<Candidate, kMaxHypotheses> candidates_;
+  std::size_t candidate_count_ = 0;
+  std::array<PoseHypothesis, kMaxHypotheses> hypotheses_;
+  std::size_t hypothesis_count_ = 0;
+  double speed_m_s_ = 0;
+  double yaw_rate_rad_s_ = 0;
+  PoseFilterCounters counters_;
 };
 
 }  // namespace zonepack

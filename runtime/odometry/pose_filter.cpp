@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/odometry/pose_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "runtime/odometry/det_math.hpp"
+
+namespace zonepack {
+namespace {
+
+using Verdict = CorrectionVerdict;
+
+constexpr double kSecondsPerNs = 1e-9;
+constexpr double kDriftStep_s = 0.1;
+
+double square(double value) noexcept { return value * value; }
+
+double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
+  return static_cast<double>(to_ns - from_ns) * kSecondsPerNs;
+}
+
+UncertainPose uncertain(const Pose2& pose, double sigma_m, double sigma_rad) noexcept {
+  Covariance2 covariance;
+  covariance.xx = square(sigma_m);
+  covariance.yy = square(sigma_m);
+  covariance.yaw_yaw = square(sigma_rad);
+  return {{pose.x_m, pose.y_m, wrap_angle(pose.yaw_rad)}, covariance};
+}
+
+std::size_t entries_for(const PoseFilterSettings& settings) {
+  return static_cast<std::size_t>(settings.history_s / settings.history_step_s) + 2;
+}
+
+}  // namespace
+
+const char* to_string(CorrectionVerdict verdict) noexcept {
+  switch (verdict) {
+    case Verdict::kUsed:
+      return "used";
+    case Verdict::kHypothesis:
+      return "hypothesis";
+    case Verdict::kTrusted:
+      return "trusted";
+    case Verdict::kReinitialised:
+      return "reinitialised";
+    case Verdict::kOutlier:
+      return "outlier";
+    case Verdict::kTooOld:
+      return "too_old";
+    case Verdict::kFromFuture:
+      return "from_future";
+    case Verdict::kInvalid:
+      return "invalid";
+  }
+  return "unknown";
+}
+
+bool is_used(CorrectionVerdict verdict) noexcept { return verdict <= Verdict::kReinitialised; }
+
+PoseFilter::PoseFilter(const PoseFilterSettings& settings)
+    : settings_(settings), history_(entries_for(settings)) {}
+
+void PoseFilter::start_at(std::int64_t t_ns, const Pose2& T_map_base) noexcept {
+  start_at(t_ns, T_map_base, settings_.start_sigma_m, settings_.start_sigma_rad);
+}
+
+void PoseFilter::start_at(std::int64_t t_ns, const Pose2& T_map_base, double sigma_m,
+                          double sigma_rad) noexcept {
+  history_.restart(t_ns);
+  trusted_ = false;
+  const UncertainPose guess = uncertain(T_map_base, sigma_m, sigma_rad);
+  candidates_[0] = {history_.newest(), guess, guess, 0, false};
+  candidate_count_ = 1;
+  list_hypotheses();
+}
+
+// Adds a step to the history and to every place the robot may be.
+void PoseFilter::append(std::int64_t t_ns, const UncertainPose& step) noexcept {
+  const bool late = t_ns <= history_.back().t_ns;
+  bool open = late && !history_.back().has_fix && history_.newest() != history_.oldest();
+  if (!late && history_.newest() > history_.oldest()) {
+    const double apart = seconds_between(history_.at(history_.newest() - 1).t_ns, t_ns);
+    open = apart <= settings_.history_step_s && !history_.back().has_fix;
+  }
+  if (trusted_ && history_.newest() == valid_from_) open = false;
+  for (std::size_t i = 0; i < candidate_count_; ++i) {
+    candidates_[i].now = compose(candidates_[i].now, step);
+    if (candidates_[i].anchor == history_.newest()) open = false;
+    // The oldest entry is about to go.
+    if (history_.full() && candidates_[i].anchor == history_.oldest()) {
+      candidates_[i].at_anchor =
+          history_.carry(candidates_[i].at_anchor, history_.oldest(), history_.oldest() + 1);
+      ++candidates_[i].anchor;
+    }
+  }
+  if (open) {
+    OdometryHistory::Entry& last = history_.back();
+    last.step = compose(last.step, step);
+    last.state = compose(history_.at(history_.newest() - 1).state, last.step);
+    last.t_ns = std::max(last.t_ns, t_ns);
+  } else {
+    history_.push(std::max(t_ns, history_.back().t_ns), step);
+  }
+  valid_from_ = std::max(valid_from_, history_.oldest());
+}
+
+void PoseFilter::predict(const OdometryIncrement& increment) noexcept {
+  if (history_.empty()) history_.restart(increment.from_ns);
+  const double back_s = seconds_between(increment.to_ns, history_.back().t_ns);
+  if (back_s > settings_.history_s) {
+    // The clock was set back: the pose stays, its past is of no use any more.
+    const UncertainPose state = history_.back().state;
+    history_.restart(increment.to_ns);
+    history_.back().state = state;
+    valid_from_ = history_.newest();
+    for (std::size_t i = 0; i < candidate_count_; ++i) {
+      candidates_[i].anchor = history_.newest();
+      candidates_[i].at_anchor = candidates_[i].now;
+    }
+  }
+  append(increment.to_ns, increment.motion);
+  const double seconds = std::max(seconds_between(increment.from_ns, increment.to_ns), 0.0);
+  const double weight = seconds / (settings_.speed_filter_s + seconds);
+  speed_m_s_ += (increment.speed_m_s - speed_m_s_) * weight;
+  yaw_rate_rad_s_ += (increment.yaw_rate_rad_s - yaw_rate_rad_s_) * weight;
+  list_hypotheses();
+}
+
+void PoseFilter::drift_until(std::int64_t now_ns) noexcept {
+  speed_m_s_ = 0;
+  yaw_rate_rad_s_ = 0;
+  if (history_.empty()) return;
+  const double seconds = seconds_between(history_.back().t_ns, now_ns);
+  if (seconds < kDriftStep_s) return;
+  const double root = std::sqrt(seconds);
+  append(now_ns, uncertain({}, settings_.drift_sigma_m_per_sqrt_s * root,
+                           settings_.drift_sigma_rad_per_sqrt_s * root));
+  list_hypotheses();
+}
+
+bool PoseFilter::is_plausible(const PoseCorrection& fix) const noexcept {
+  const auto sound = [](double sigma) { return std::isfinite(sigma) && sigma > 0 && sigma < 1e6; };
+  const auto near = [](double metres) { return std::isfinite(metres) && std::abs(metres) < 1e7; };
+  return near(fix.T_map_base.x_m) && near(fix.T_map_base.y_m) &&
+         std::isfinite(wrap_angle(fix.T_map_base.yaw_rad)) && sound(fix.sigma_x_m) &&
+         sound(fix.sigma_y_m) && sound(fix.sigma_yaw_rad);
+}
+
+UncertainPose PoseFilter::measured(const PoseCorrection& fix) const noexcept {
+  UncertainPose z =
+      uncertain(fix.T_map_base, 0, std::max(fix.sigma_yaw_rad, settings_.min_sigma_rad));
+  z.covariance.xx = square(std::max(fix.sigma_x_m, settings_.min_sigma_m));
+  z.covariance.yy = square(std::max(fix.sigma_y_m, settings_.min_sigma_m));
+  return z;
+}
+
+UncertainPose PoseFilter::motion_since_newest(double seconds) const noexcept {
+  const double s = std::clamp(seconds, 0.0, settings_.extrapolate_s);
+  const double distance = speed_m_s_ * s;
+  const double turn = yaw_rate_rad_s_ * s;
+  // A tenth of the way: the speed may change meanwhile.
+  return {along_arc(distance, turn), uncertain({}, distance * 0.1, turn * 0.1).covariance};
+}
+
+CorrectionVerdict PoseFilter::count(CorrectionVerdict verdict) noexcept {
+  ++(is_used(verdict) ? counters_.used : counters_.rejected);
+  if (verdict == Verdict::kOutlier) ++counters_.outliers;
+  if (verdict == Verdict::kTooOld) ++counters_.too_old;
+  if (verdict == Verdict::kFromFuture) ++counters_.from_future;
+  if (verdict == Verdict::kInvalid) ++counters_.invalid;
+  if (verdict == Verdict::kReinitialised) ++counters_.reinitialised;
+  return verdict;
+}
+
+CorrectionVerdict PoseFilter::correct(const PoseCorrection& fix, std::int64_t now_ns) noexcept {
+  if (!is_plausible(fix)) return count(Verdict::kInvalid);
+  if (seconds_between(now_ns, fix.stamp_ns) > settings_.future_tolerance_s) {
+    return count(Verdict::kFromFuture);
+  }
+  if (history_.empty()) history_.restart(fix.stamp_ns);
+  UncertainPose z = measured(fix);
+  std::uint64_t index = history_.newest();
+  if (fix.stamp_ns > history_.back().t_ns) {
+    const double ahead = seconds_between(history_.back().t_ns, fix.stamp_ns);
+    z = step_back(z, motion_since_newest(ahead));
+  } else {
+    const std::optional<std::uint64_t> found = history_.find(fix.stamp_ns);
+    if (!found || (trusted_ && *found < valid_from_)) return count(Verdict::kTooOld);
+    index = *found;
+    z = history_.carry_to_entry(z, fix.stamp_ns, index);
+  }
+  const Verdict verdict = trusted_ ? place(z, index) : support(z, index);
+  list_hypotheses();
+  return count(verdict);
+}
+
+// Trusted: through the gate, or to the candidates.
+CorrectionVerdict PoseFilter::place(const UncertainPose& fix, std::uint64_t index) noexcept {
+  OdometryHistory::Entry& entry = history_.at(index);
+  if (!(mahalanobis2(entry.state, fix) <= settings_.gate_chi2)) return support(fix, index);
+  entry.fix = entry.has_fix ? fuse(entry.fix, fix) : fix;
+  entry.has_fix = true;
+  entry.state = fuse(entry.state, fix);
+  history_.replay_from(index);
+  candidate_count_ = 0;
+  return Verdict::kUsed;
+}
+
+// Adds the fix to the candidate it agrees with best, or makes it one.
+CorrectionVerdict PoseFilter::support(const UncertainPose& fix, std::uint64_t index) noexcept {
+  Candidate* best = nullptr;
+  double least = settings_.gate_chi2;
+  bool near_guess = false;
+  UncertainPose best_prior, best_fix;
+  for (std::size_t i = 0; i < candidate_count_; ++i) {
+    Candidate& candidate = candidates_[i];
+    const std::uint64_t at = std::max(index, candidate.anchor);
+    const UncertainPose prior = history_.carry(candidate.at_anchor, candidate.anchor, at);
+    const UncertainPose later_fix = history_.carry(fix, index, at);
+    const double distance2 = mahalanobis2(prior, later_fix);
+    if (candidate.fixes == 0) {
+      near_guess = distance2 <= settings_.gate_chi2;
+    } else if (distance2 <= least) {
+      least = distance2;
+      best = &candidate;
+      best_prior = prior;
+      best_fix = later_fix;
+    }
+  }
+  const Verdict kept = trusted_ ? Verdict::kOutlier : Verdict::kHypothesis;
+  if (best == nullptr) {
+    new_candidate() = {index, fix, history_.carry(fix, index, history_.newest()), 1, near_guess};
+    return kept;
+  }
+  best->anchor = std::max(index, best->anchor);
+  best->at_anchor = fuse(best_prior, best_fix);
+  best->now = history_.carry(best->at_anchor, best->anchor, history_.newest());
+  ++best->fixes;
+  if (best->fixes < (trusted_ ? settings_.reinit_fixes : 2)) return kept;
+  const Verdict verdict = trusted_ ? Verdict::kReinitialised : Verdict::kTrusted;
+  adopt(Candidate(*best));
+  return verdict;
+}
+
+void PoseFilter::adopt(const Candidate& candidate) noexcept {
+  for (std::uint64_t i = history_.oldest(); i <= history_.newest(); ++i) {
+    history_.at(i).has_fix = false;
+  }
+  valid_from_ = candidate.anchor;
+  history_.at(valid_from_).state = candidate.at_anchor;
+  history_.replay_from(valid_from_);
+  trusted_ = true;
+  candidate_count_ = 0;
+}
+
+// A free place, or that of the candidate with the fewest fixes, the oldest of these; never the
+// guess.
+PoseFilter::Candidate& PoseFilter::new_candidate() noexcept {
+  if (candidate_count_ < candidates_.size()) return candidates_[candidate_count_++];
+  Candidate* weakest = nullptr;
+  for (Candidate& candidate : candidates_) {
+    if (candidate.fixes == 0) continue;
+    if (weakest == nullptr || candidate.fixes < weakest->fixes ||
+        (candidate.fixes == weakest->fixes && candidate.anchor < weakest->anchor)) {
+      weakest = &candidate;
+    }
+  }
+  return *weakest;
+}
+
+// A start pose holds until a fix agrees with it or two agree with each other.
+int PoseFilter::rank(const Candidate& candidate) const noexcept {
+  if (candidate.fixes == 0) return 2;
+  return static_cast<int>(candidate.fixes) * 2 + (candidate.near_guess ? 1 : 0) - 1;
+}
+
+void PoseFilter::list_hypotheses() noexcept {
+  if (trusted_) {
+    hypotheses_[0] = {history_.back().state.pose, history_.back().state.covariance, 2};
+    hypothesis_count_ = 1;
+    return;
+  }
+  std::array<const Candidate*, kMaxHypotheses> order{};
+  for (std::size_t i = 0; i < candidate_count_; ++i) order[i] = &candidates_[i];
+  // Insertion sort: best first, newer before older.
+  for (std::size_t i = 1; i < candidate_count_; ++i) {
+    for (std::size_t j = i; j > 0; --j) {
+      const int higher = rank(*order[j]) - rank(*order[j - 1]);
+      if (higher < 0 || (higher == 0 && order[j]->anchor <= order[j - 1]->anchor)) break;
+      std::swap(order[j], order[j - 1]);
+    }
+  }
+  hypothesis_count_ = candidate_count_;
+  for (std::size_t i = 0; i < candidate_count_; ++i) {
+    hypotheses_[i] = {order[i]->now.pose, order[i]->now.covariance, order[i]->fixes};
+  }
+}
+
+std::span<const PoseHypothesis> PoseFilter::hypotheses() const noexcept {
+  return {hypotheses_.data(), hypothesis_count_};
+}
+
+PoseEstimate PoseFilter::estimate(std::int64_t now_ns) const noexcept {
+  PoseEstimate estimate;
+  estimate.t_ns = now_ns;
+  estimate.trusted = trusted_;
+  if (hypothesis_count_ == 0) return estimate;
+  const UncertainPose newest = {hypotheses_[0].T_map_base, hypotheses_[0].covariance};
+  const UncertainPose now =
+      compose(newest, motion_since_newest(seconds_between(history_.back().t_ns, now_ns)));
+  estimate.T_map_base = now.pose;
+  estimate.covariance = now.covariance;
+  estimate.speed_m_s = speed_m_s_;
+  estimate.yaw_rate_rad_s = yaw_rate_rad_s_;
+  estimate.valid = true;
+  return estimate;
+}
+
+}  // namespace zonepack

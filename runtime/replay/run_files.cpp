@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/replay/run_files.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <span>
+#include <string_view>
+
+#include "platform/base/require.hpp"
+#include "runtime/odometry/det_math.hpp"
+
+namespace zonepack {
+namespace {
+
+constexpr std::string_view kCorrectionColumns = "stamp received x y yaw sigma_x sigma_y sigma_yaw";
+constexpr std::string_view kTruthColumns = "t x y z qx qy qz qw";
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kLastSecond = 9'000'000'000;
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> words;
+  std::size_t begin = 0;
+  while ((begin = line.find_first_not_of(" \t\r", begin)) != std::string_view::npos) {
+    const std::size_t end = std::min(line.find_first_of(" \t\r", begin), line.size());
+    words.push_back(line.substr(begin, end - begin));
+    begin = end;
+  }
+  return words;
+}
+
+bool parse_number(std::string_view word, double& value) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
+// Seconds as nanoseconds, exact for plain decimals; to a double's precision with an exponent.
+bool parse_stamp(std::string_view word, std::int64_t& stamp_ns) {
+  std::int64_t seconds = 0;
+  const char* const end = word.data() + word.size();
+  auto [at, error] = std::from_chars(word.data(), end, seconds);
+  if (error != std::errc() || word.starts_with('-')) return false;
+  std::int64_t fraction_ns = 0;
+  if (at != end && *at == '.') {
+    std::int64_t unit_ns = kSecond_ns / 10;
+    for (++at; at != end && *at >= '0' && *at <= '9'; ++at, unit_ns /= 10) {
+      fraction_ns += (*at - '0') * unit_ns;
+    }
+  }
+  if (at != end) {
+    double value = 0;
+    if (!parse_number(word, value) || !(value >= 0 && value < kLastSecond)) return false;
+    stamp_ns = static_cast<std::int64_t>(value * kSecond_ns);
+    return true;
+  }
+  stamp_ns = seconds * kSecond_ns + fraction_ns;
+  return seconds < kLastSecond;
+}
+
+// Calls take(words) for every record; its text, if any, is what is wrong with the line. The first
+// two columns of a record may be stamps, so columns are words here.
+template <typename Take>
+bool for_each_record(const std::string& path, std::string_view columns, std::string& fault,
+                     Take&& take) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    fault = path + ": " + std::strerror(errno) + "; expected lines of " + std::string(columns);
+    return false;
+  }
+  const std::size_t count = split(columns).size();
+  std::string line;
+  for (std::size_t number = 1; std::getline(file, line); ++number) {
+    const std::vector<std::string_view> words = split(line);
+    if (words.empty() || words[0].front() == '#') continue;
+    std::string wrong;
+    if (words.size() < count) {
+      wrong = std::to_string(words.size()) + " columns";
+    } else {
+      wrong = take(std::span(words));
+    }
+    if (wrong.empty()) continue;
+    fault =
+        path + ":" + std::to_string(number) + ": " + wrong + "; expected " + std::string(columns);
+    return false;
+  }
+  if (file.bad()) fault = path + ": " + std::strerror(errno);
+  return !file.bad();
+}
+
+std::string quoted(std::string_view word) {
+  return std::string(1, '"').append(word).append(1, '"');
+}
+
+// The reason why words[first], words[first + 1] ... are not numbers; empty when they are.
+std::string parse_numbers(std::span<const std::string_view> words, std::size_t first,
+                          std::span<double> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!parse_number(words[first + i], values[i])) {
+      return quoted(words[first + i]) + " is not a number";
+    }
+  }
+  return {};
+}
+
+std::string not_a_stamp(std::string_view word) {
+  return quoted(word) + " is not a stamp in seconds";
+}
+
+}  // namespace
+
+std::optional<std::vector<PoseCorrection>> read_corrections(const std::string& path,
+                                                            std::string& fault) {
+  std::vector<PoseCorrection> corrections;
+  const auto take = [&](std::span<const std::string_view> words) -> std::string {
+    if (words.size() != 8) return std::to_string(words.size()) + " columns";
+    PoseCorrection c;
+    if (!parse_stamp(words[0], c.stamp_ns)) return not_a_stamp(words[0]);
+    if (!parse_stamp(words[1], c.received_ns)) return not_a_stamp(words[1]);
+    double v[6] = {};
+    if (std::string wrong = parse_numbers(words, 2, v); !wrong.empty()) return wrong;
+    c.T_map_base = {v[0], v[1], v[2]};
+    c.sigma_x_m = v[3];
+    c.sigma_y_m = v[4];
+    c.sigma_yaw_rad = v[5];
+    corrections.push_back(c);
+    return {};
+  };
+  if (!for_each_record(path, kCorrectionColumns, fault, take)) return std::nullopt;
+  std::stable_sort(corrections.begin(), corrections.end(),
+                   [](const PoseCorrection& a, const PoseCorrection& b) {
+                     return a.received_ns < b.received_ns;
+                   });
+  return corrections;
+}
+
+TruthTrack::TruthTrack(std::vector<Sample> samples) : samples_(std::move(samples)) {
+  ZP_REQUIRE(!samples_.empty());
+}
+
+std::optional<Pose2> TruthTrack::at(std::int64_t t_ns) const noexcept {
+  if (t_ns < samples_.front().t_ns || t_ns > samples_.back().t_ns) return std::nullopt;
+  const auto after = std::lower_bound(samples_.begin(), samples_.end(), t_ns,
+                                      [](const Sample& s, std::int64_t t) { return s.t_ns < t; });
+  if (after->t_ns == t_ns) return after->T_map_base;
+  const Sample& a = *(after - 1);
+  const Sample& b = *after;
+  const double part = static_cast<double>(t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns);
+  const Pose2& p = a.T_map_base;
+  const Pose2& q = b.T_map_base;
+  return Pose2{p.x_m + (q.x_m - p.x_m) * part, p.y_m + (q.y_m - p.y_m) * part,
+               wrap_angle(p.yaw_rad + wrap_angle(q.yaw_rad - p.yaw_rad) * part)};
+}
+
+std::optional<TruthTrack> read_truth(const std::string& path, std::string& fault) {
+  std::vector<TruthTrack::Sample> samples;
+  const auto take = [&](std::span<const std::string_view> words) -> std::string {
+    TruthTrack::Sample sample;
+    if (!parse_stamp(words[0], sample.t_ns)) return not_a_stamp(words[0]);
+    if (!samples.empty() && sample.t_ns < samples.back().t_ns) {
+      return "stamp " + std::string(words[0]) + " before the one on the line above";
+    }
+    double v[7] = {};
+    if (std::string wrong = parse_numbers(words, 1, v); !wrong.empty()) return wrong;
+    const auto [x, y, z, qx, qy, qz, qw] = v;
+    const double norm2 = qx * qx + qy * qy + qz * qz + qw * qw;
+    if (!std::isfinite(x + y + z)) return "a position that is not finite";
+    if (!(norm2 > 0.98 && norm2 < 1.02)) return "a quaternion that is not of length 1";
+    const double yaw = det_atan2(2 * (qw * qz + qx * qy), norm2 - 2 * (qy * qy + qz * qz));
+    sample.T_map_base = {x, y, yaw};
+    samples.push_back(sample);
+    return {};
+  };
+  if (!for_each_record(path, kTruthColumns, fault, take)) return std::nullopt;
+  if (samples.empty()) {
+    fault = path + ": no samples; expected lines of " + std::string(kTruthColumns);
+    return std::nullopt;
+  }
+  return TruthTrack(std::move(samples));
+}
+
+}  // namespace zonepack

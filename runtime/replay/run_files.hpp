@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/odometry/pose.hpp"
+#include "runtime/odometry/pose_filter.hpp"
+
+// The text files that come with a recorded run. One record a line, columns apart by blanks, lines
+// beginning with # and empty lines passed over. Stamps are seconds, read to the nanosecond.
+// Errors are complete messages: file:line, what was found, which columns are expected.
+namespace zonepack {
+
+// `stamp received x y yaw sigma_x sigma_y sigma_yaw`: seconds, metres, radians; base_link in map.
+// In order of reception (lines of equal `received` keep their order). Poses and sigmas may be
+// anything a number can be, nan too: judging them is the filter's part. Nothing on error; `fault`
+// says why.
+std::optional<std::vector<PoseCorrection>> read_corrections(const std::string& path,
+                                                            std::string& fault);
+
+// Where the robot really was.
+class TruthTrack {
+ public:
+  struct Sample {
+    std::int64_t t_ns = 0;
+    Pose2 T_map_base;
+  };
+
+  // Samples in order of time, at least one.
+  explicit TruthTrack(std::vector<Sample> samples);
+
+  // The pose at t_ns: straight between samples, yaw the short way; nullopt before the first sample
+  // and after the last.
+  std::optional<Pose2> at(std::int64_t t_ns) const noexcept;
+
+  const std::vector<Sample>& samples() const noexcept { return samples_; }
+
+ private:
+  std::vector<Sample> samples_;
+};
+
+// `t x y z qx qy qz qw`, further columns ignored; stamps must not step back. z is not used; of the
+// rotation (a unit quaternion to 1 %) only the heading.
+std::optional<TruthTrack> read_truth(const std::string& path, std::string& fault);
+
+}  // namespace zonepack
