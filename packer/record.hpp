@@ -34,10 +34,9 @@ struct Features {
   std::vector<float> size, angle, response;
   std::vector<std::int32_t> octave;
   std::vector<std::int32_t> word_id;  // <= 0: not in the dictionary
-  std::vector<float> point_x, point_y,
-      point_z;  // T_base, metres; NaN where the database holds NULL
-  // Which of a point's three coordinates were NULL is told by NaN; a real NaN cannot be stored in
-  // SQLite.
+  // T_base, metres. NaN where the database holds NULL, coordinate by coordinate; SQLite itself
+  // cannot store a NaN.
+  std::vector<float> point_x, point_y, point_z;
   enum class DescriptorType : std::uint8_t { kNone, kU8, kF32 };
   DescriptorType descriptor_type = DescriptorType::kNone;
   std::uint32_t descriptor_dim = 0;  // elements per descriptor
@@ -61,8 +60,8 @@ struct Scan {
 struct Grid {
   float cell_size = 0;
   std::array<float, 3> view_point{};
-  std::optional<Matrix> ground, obstacle,
-      empty;  // float32 cells in the base frame; nullopt when NULL
+  // float32 cells in the base frame; nullopt when NULL. Where all three are, there is no grid.
+  std::optional<Matrix> ground, obstacle, empty;
 };
 
 struct Link {
