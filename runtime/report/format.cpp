@@ -128,6 +128,20 @@ double text_width_em(std::string_view text, bool bold) noexcept {
   return bold ? width * kBoldFactor : width;
 }
 
+std::string shorten_text(std::string_view text, double width_em) {
+  constexpr std::string_view kCut = "...";
+  if (text_width_em(text) <= width_em) return std::string(text);
+  std::size_t kept = 0;  // bytes, ends before a character
+  for (std::size_t next = 1; next < text.size(); ++next) {
+    if (is_continuation(text[next])) continue;
+    if (text_width_em(text.substr(0, next)) + text_width_em(kCut) > width_em) break;
+    kept = next;
+  }
+  text = text.substr(0, kept);
+  while (text.ends_with(' ')) text.remove_suffix(1);
+  return std::string(text).append(kCut);
+}
+
 std::vector<std::string> wrap_text(std::string_view text, double width_em) {
   std::vector<std::string> lines;
   while (!text.empty()) {

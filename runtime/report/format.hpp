@@ -30,6 +30,9 @@ std::string escape_xml(std::string_view text);
 // Width in units of the font size, by the advances of DejaVu Sans (Verdana's are nearly the same).
 double text_width_em(std::string_view text, bool bold = false) noexcept;
 
+// The text, or as much of its start as fits with "..." behind it.
+std::string shorten_text(std::string_view text, double width_em);
+
 // Lines no wider than `width_em`, broken at blanks only; a longer word stands alone.
 std::vector<std::string> wrap_text(std::string_view text, double width_em);
 

@@ -8,7 +8,7 @@ namespace zonepack::report {
 namespace {
 
 constexpr double kWidth = 940, kMargin = 20, kInner = kWidth - 2 * kMargin;
-constexpr double kFactHeight = 52, kRowHeight = 19, kCellGap = 18;
+constexpr double kFactHeight = 52, kRowHeight = 19, kCellGap = 18, kCellSize = 11;
 constexpr std::size_t kFactsARow = 4;
 
 // Draws downwards; `y` is the top of what comes next. Without a drawing it only measures.
@@ -52,22 +52,17 @@ struct Sheet {
 
   void table(const Table& table) {
     heading(table.title, table.caption);
-    std::vector<double> widths;
-    for (std::size_t c = 0; c < table.columns.size(); ++c) {
-      double width = text_width_em(table.columns[c].name, true) * 11;
-      for (const auto& row : table.rows) {
-        if (c < row.size()) width = std::max(width, text_width_em(row[c]) * 11);
-      }
-      widths.push_back(width);
-    }
+    const std::vector<double> widths = column_widths(table);
     const auto draw_row = [&](const auto& text_of, bool bold) {
       double x = kMargin;
       y += kRowHeight;
       for (std::size_t c = 0; c < widths.size(); ++c) {
         const bool number = table.columns[c].number;
         if (svg != nullptr) {
-          svg->text({number ? x + widths[c] : x, y - 6}, text_of(c),
-                    {.size = 11, .bold = bold, .anchor = number ? Anchor::kEnd : Anchor::kStart});
+          svg->text(
+              {number ? x + widths[c] : x, y - 6},
+              shorten_text(text_of(c), widths[c] / kCellSize + 0.1),
+              {.size = kCellSize, .bold = bold, .anchor = number ? Anchor::kEnd : Anchor::kStart});
         }
         x += widths[c] + kCellGap;
       }
@@ -79,6 +74,25 @@ struct Sheet {
     for (const auto& row : table.rows) {
       draw_row([&](std::size_t c) { return c < row.size() ? row[c] : std::string(); }, false);
     }
+  }
+
+  // As wide as their text; when that is too much together, the widest gives way.
+  static std::vector<double> column_widths(const Table& table) {
+    std::vector<double> widths;
+    double total = 0;
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      double width = text_width_em(table.columns[c].name, true);
+      for (const auto& row : table.rows) {
+        if (c < row.size()) width = std::max(width, text_width_em(row[c]));
+      }
+      widths.push_back(width * kCellSize);
+      total += widths.back() + kCellGap;
+    }
+    if (total - kCellGap > kInner) {
+      double& widest = *std::ranges::max_element(widths);
+      widest = std::max(widest - (total - kCellGap - kInner), 40.0);
+    }
+    return widths;
   }
 };
 

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <clocale>
 #include <limits>
 
 namespace zonepack::report {
@@ -21,13 +20,6 @@ TEST(Format, NumbersDropZerosButNotDigits) {
 TEST(Format, WhatIsNotANumberIsADash) {
   EXPECT_EQ(format_number(std::numeric_limits<double>::quiet_NaN(), 2), "-");
   EXPECT_EQ(format_number(-std::numeric_limits<double>::infinity(), 2), "-");
-}
-
-TEST(Format, NumbersDoNotFollowTheLocale) {
-  const std::string old = std::setlocale(LC_ALL, nullptr);
-  std::setlocale(LC_ALL, "de_DE.UTF-8");
-  EXPECT_EQ(format_number(1234.5, 1), "1234.5");
-  std::setlocale(LC_ALL, old.c_str());
 }
 
 TEST(Format, BytesHaveThreeDigitsAndABinaryUnit) {
@@ -76,6 +68,16 @@ TEST(Format, WidthCountsCharactersNotBytes) {
   EXPECT_DOUBLE_EQ(text_width_em("il"), 0.56);        // 0.28 + 0.28
   EXPECT_DOUBLE_EQ(text_width_em("\xC3\x9F"), 0.65);  // one character of two bytes
   EXPECT_GT(text_width_em("il", true), text_width_em("il"));
+}
+
+TEST(Format, ShortensBetweenCharacters) {
+  EXPECT_EQ(shorten_text("aaa", 2), "aaa");  // 1.83 em
+  // "..." is 0.96 em wide, so that one "a" of 0.61 em fits into 2 em, and no broken character ever.
+  EXPECT_EQ(shorten_text("aaaa", 2), "a...");
+  EXPECT_EQ(shorten_text("a\xC3\x9F\xC3\x9F", 2.5), "a\xC3\x9F\xC3\x9F");
+  EXPECT_EQ(shorten_text("a\xC3\x9F\xC3\x9F\xC3\x9F", 2.3), "a\xC3\x9F...");
+  EXPECT_EQ(shorten_text("west ward", 3.7), "west...");
+  EXPECT_EQ(shorten_text("west", 0), "...");
 }
 
 TEST(Format, WrapsAtBlanksAndKeepsEveryWord) {

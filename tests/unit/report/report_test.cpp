@@ -74,6 +74,19 @@ TEST(Report, AsASheetHoldsEverything) {
   }
 }
 
+TEST(Report, AWideTableGivesWayInItsWidestColumn) {
+  Report report;
+  report.tables.push_back({"T",
+                           "",
+                           {{"Zone"}, {"Label"}, {"Bytes", true}},
+                           {{"L1", std::string(400, 'w'), "1234567"}}});
+  const std::string svg = to_sheet(report).file_text();
+  EXPECT_EQ(count_of(svg, std::string(400, 'w')), 0u);
+  EXPECT_EQ(count_of(svg, "www...</text>"), 1u);
+  // The last column still ends inside the sheet: 940 px less its margin of 20.
+  EXPECT_EQ(count_of(svg, "<text x=\"920\""), 2u);
+}
+
 TEST(Report, WithNothingInItIsStillAPageAndASheet) {
   EXPECT_EQ(XmlCheck::fault_of(to_html(Report{})), "");
   EXPECT_EQ(XmlCheck::fault_of(to_sheet(Report{}).file_text()), "");

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/commands/report.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "platform/storage.hpp"
+#include "runtime/pack_format/accounting.hpp"
+#include "runtime/pack_format/checksum.hpp"
+#include "runtime/pack_format/manifest_file.hpp"
+
+namespace zonepack::packer {
+namespace {
+
+std::string text_of(const flatbuffers::String* text) {
+  return text == nullptr ? std::string() : text->str();
+}
+
+std::runtime_error cannot_read(const std::string& path, const Error& error) {
+  if (error.code == ErrorCode::kNotFound) {
+    return std::runtime_error(path + ": not found; is this a map that 'zonepack build' wrote?");
+  }
+  if (error.code == ErrorCode::kIo) {
+    return std::runtime_error(path + ": " + std::strerror(static_cast<int>(error.detail)));
+  }
+  return std::runtime_error(path + ": " + to_string(error.code) +
+                            "; 'zonepack verify' tells where it is damaged");
+}
+
+std::string payload_names(const fb::Manifest& manifest) {
+  std::string names;
+  for (const fb::PayloadKind kind : fb::EnumValuesPayloadKind()) {
+    if ((mask_of(kind) & kDefaultPayload & manifest.payload_mask() & ~kCoreOnly) == 0) continue;
+    if (!names.empty()) names += ", ";
+    for (const char c : std::string_view(fb::EnumNamePayloadKind(kind))) {
+      names += static_cast<char>(c | 0x20);  // lower case, as --payload spells them
+    }
+  }
+  return names.empty() ? "poses only" : names;
+}
+
+report::PackedZone zone_of(const fb::Zone& zone, std::uint32_t slots) {
+  report::PackedZone out{.name = zone.name()->str(),
+                         .zone_type = text_of(zone.zone_type()),
+                         .label = text_of(zone.label()),
+                         .polygon = polygon_of(zone),
+                         .signatures = zone.signatures(),
+                         .features = zone.features(),
+                         .charged_bytes = charged_with(0, slots),
+                         .stored_bytes = 0,
+                         .signature_positions = {}};
+  const PayloadMask loaded = payload_closure(kDefaultPayload, zone.grid_needs_scan());
+  for (const fb::PayloadBytes* bytes : *zone.payloads()) {
+    const bool wanted = (loaded & mask_of(static_cast<fb::PayloadKind>(bytes->kind()))) != 0;
+    if (wanted) out.stored_bytes += bytes->stored();
+  }
+  if (zone.nodes() == nullptr) return out;
+  for (const fb::Node* node : *zone.nodes())
+    out.signature_positions.push_back({node->x(), node->y()});
+  return out;
+}
+
+std::string pair_text(const fb::Manifest& manifest, const SmallestBudget& smallest) {
+  const auto name = [&](ZoneId zone) { return manifest.zones()->Get(zone)->name()->str(); };
+  if (smallest.zone_a == kNoZone) return "no zone";
+  if (smallest.zone_b == kNoZone) return name(smallest.zone_a);
+  return name(smallest.zone_a) + " with " + name(smallest.zone_b);
+}
+
+std::string source_text(const fb::Provenance& source) {
+  std::string text = "Packed from " + text_of(source.source_kind());
+  const std::string version = text_of(source.source_version());
+  const std::string packer = text_of(source.packer_version());
+  if (!version.empty()) text += " " + version;
+  if (!packer.empty()) text += " by zonepack " + packer;
+  return text + ".";
+}
+
+}  // namespace
+
+report::PackReport read_pack_report(const std::string& folder) {
+  const std::string path = folder + "/" + std::string(kManifestName);
+  const Result<std::vector<std::byte>> file =
+      read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail));
+  if (!file) throw cannot_read(path, file.error());
+  const Result<const fb::Manifest*> checked = check_manifest(*file);
+  if (!checked) throw cannot_read(path, checked.error());
+  const fb::Manifest& manifest = **checked;
+
+  const MapCosts costs = map_costs(manifest, kDefaultPayload);
+  const SmallestBudget smallest = smallest_budget(manifest, costs, {});
+  report::PackReport map;
+  map.map = folder;
+  map.version = to_hex(manifest_digest(*file));
+  map.payload = payload_names(manifest);
+  map.source = source_text(*manifest.provenance());
+  map.fixed_bytes = costs.fixed_bytes;
+  map.smallest_budget_bytes = smallest.bytes;
+  map.smallest_budget_pair = pair_text(manifest, smallest);
+  for (flatbuffers::uoffset_t i = 0; i < manifest.zones()->size(); ++i) {
+    map.zones.push_back(zone_of(*manifest.zones()->Get(i), costs.zone_slots[i]));
+  }
+  if (manifest.portals() == nullptr) return map;
+  for (const fb::Portal* portal : *manifest.portals()) {
+    map.portals.push_back(
+        {{portal->p()->x(), portal->p()->y()}, {portal->q()->x(), portal->q()->y()}});
+  }
+  return map;
+}
+
+void add_report_command(CLI::App& app, int& exit_code) {
+  struct Options {
+    std::string folder, out;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand(
+      "report", "Draw a map: the floor plan with its zones coloured by the bytes they charge");
+  command->add_option("DIR", options->folder, "folder of the map")->required();
+  command->add_option("--out", options->out, "file to write: .html, .png or .svg")->required();
+  command->callback([options, &exit_code] {
+    const report::Report page = report::make_pack_report(read_pack_report(options->folder));
+    if (const auto problem = report::write_report(options->out, page)) {
+      throw std::runtime_error(*problem);
+    }
+    exit_code = 0;
+  });
+}
+
+}  // namespace zonepack::packer
