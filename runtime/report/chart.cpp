@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLeft = 72, kRight = 84, kTitle = 24, kBand = 18, kAxisBelow = 38;
 constexpr int kTicks = 6;
-constexpr double kSmall = 11, kEndLabel = 15;
+constexpr double kSmall = 11, kTiny = 8, kEndLabel = 15;
 
 std::vector<LegendItem> legend_of(const Chart& chart) {
   std::vector<LegendItem> items;
@@ -76,10 +76,11 @@ void draw_timeline(Svg& svg, const Chart& chart, const ChartScale& scale) {
                              format_number(block.span.to_s, 1) + " s";
     svg.rect({from, scale.bottom() + 4}, std::max(width, 0.5), kBand,
              {.fill = block.color, .stroke = kWhite, .stroke_width = 0.75, .hint = hint});
-    if (text_width_em(block.name, true) * kSmall + 4 > width) continue;
-    svg.text(
-        {from + width / 2, scale.bottom() + 4 + kBand - 5}, block.name,
-        {.size = kSmall, .color = ink_on(block.color), .bold = true, .anchor = Anchor::kMiddle});
+    const double em = text_width_em(block.name, true);
+    const double size = em * kSmall + 4 <= width ? kSmall : kTiny;
+    if (em * size + 2 > width) continue;
+    svg.text({from + width / 2, scale.bottom() + 4 + kBand / 2 + size * 0.37}, block.name,
+             {.size = size, .color = ink_on(block.color), .bold = true, .anchor = Anchor::kMiddle});
   }
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kLeft = 40, kRight = 14, kAxisBelow = 40, kMostHeight = 760;
 constexpr double kMargin_m = 0.4;
-constexpr double kArrowEvery = 80;  // pixels of route
+constexpr double kArrowEvery = 110;  // pixels of route
 constexpr Style kRouteHalo{.stroke = kWhite, .stroke_width = 5.5, .opacity = 0.8, .round = true};
 
 bool is_finite(Point2 p) noexcept { return std::isfinite(p.x_m) && std::isfinite(p.y_m); }
@@ -156,7 +156,7 @@ void draw_routes(Svg& svg, const FloorPlan& plan, const PlanView& view) {
   for (const Point2& p : plan.true_route) {
     if (is_finite(p)) truth.push_back(view(p));
   }
-  svg.polyline(truth, {.stroke = kInk, .stroke_width = 1, .dash = "4 3"});
+  svg.polyline(truth, {.stroke = kInk, .stroke_width = 0.9, .opacity = 0.8, .dash = "4 3"});
   draw_arrows(svg, pieces);
   if (pieces.empty()) return;
   const Px start = pieces.front().points.front(), end = pieces.back().points.back();
@@ -188,7 +188,7 @@ struct Label {
 
 // The first form that hides nothing, else the one that hides least.
 std::optional<Label> choose_label(const PlanZone& zone, const PlanView& view,
-                                  std::span<const PxBox> taken, std::span<const Px> avoid) {
+                                  const LabelGround& ground) {
   constexpr std::pair<double, double> kSizes[] = {{13, 10.5}, {11, 9}, {12, 0}, {9, 0}, {7, 0}};
   std::optional<Label> best;
   for (const auto& [name_size, note_size] : kSizes) {
@@ -196,8 +196,7 @@ std::optional<Label> choose_label(const PlanZone& zone, const PlanView& view,
     const double width =
         std::max(text_width_em(zone.name, true) * name_size, text_width_em(zone.note) * note_size);
     const double height = name_size * 0.95 + note_size * 1.25;
-    const std::optional<PlacedLabel> place =
-        place_label(view(zone.polygon), width, height, taken, avoid);
+    const std::optional<PlacedLabel> place = place_label(view(zone.polygon), width, height, ground);
     if (!place || (best && place->hidden >= best->place.hidden)) continue;
     best = {name_size, note_size, *place, box_around(place->center, width, height)};
     if (place->hidden == 0) break;
@@ -206,12 +205,12 @@ std::optional<Label> choose_label(const PlanZone& zone, const PlanView& view,
 }
 
 void draw_labels(Svg& svg, const FloorPlan& plan, const PlanView& view) {
-  const std::vector<Px> avoid = points_to_keep(plan, view);
-  std::vector<PxBox> taken;
+  LabelGround ground{
+      .taken = {}, .keep = points_to_keep(plan, view), .spare = view(plan.signatures)};
   for (const PlanZone& zone : plan.zones) {
-    const std::optional<Label> label = choose_label(zone, view, taken, avoid);
+    const std::optional<Label> label = choose_label(zone, view, ground);
     if (!label) continue;
-    taken.push_back(label->box);
+    ground.taken.push_back(label->box);
     TextStyle style{.size = label->name_size,
                     .color = ink_on(zone.fill),
                     .bold = true,

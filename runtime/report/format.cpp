@@ -41,12 +41,16 @@ std::size_t utf8_length(std::string_view text) noexcept {
 
 }  // namespace
 
-std::string format_number(double value, int decimals) {
+std::string format_fixed(double value, int decimals) {
   if (!std::isfinite(value)) return "-";
   std::array<char, 400> buffer;
   const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
                                           std::chars_format::fixed, decimals);
-  std::string text(buffer.data(), error == std::errc() ? end : buffer.data());
+  return std::string(buffer.data(), error == std::errc() ? end : buffer.data());
+}
+
+std::string format_number(double value, int decimals) {
+  std::string text = format_fixed(value, decimals);
   if (text.find('.') != std::string::npos) {
     text.erase(text.find_last_not_of('0') + 1);
     if (text.back() == '.') text.pop_back();

@@ -14,6 +14,9 @@ namespace zonepack::report {
 // At most `decimals` digits after the point, trailing zeros dropped; "-" when not finite.
 std::string format_number(double value, int decimals);
 
+// Exactly `decimals` digits after the point, for columns; "-" when not finite.
+std::string format_fixed(double value, int decimals);
+
 // 12345 -> "12 345", with thin spaces; for reading, not for scripts.
 std::string format_count(std::uint64_t count);
 

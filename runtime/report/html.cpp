@@ -9,25 +9,24 @@ constexpr std::string_view kStyle = R"(
 :root { color-scheme: light; }
 body { font: 16px/1.5 "DejaVu Sans", Verdana, sans-serif; color: #1f242b; background: #fff;
        max-width: 940px; margin: 0 auto; padding: 24px 20px 48px; }
-h1 { font-size: 1.5rem; line-height: 1.25; margin: 0 0 .5rem; }
+h1 { font-size: 1.5rem; line-height: 1.25; margin: 0 0 .5rem; overflow-wrap: anywhere; }
 h2 { font-size: 1.1rem; margin: 2.25rem 0 .25rem; }
 p.headline { font-size: 1.1rem; margin: 0 0 1.25rem; }
 p.caption, footer { color: #5c6570; font-size: .85rem; margin: 0 0 .75rem; }
-dl { display: grid; grid-template-columns: repeat(auto-fill, minmax(200px, 1fr)); gap: 1px; margin: 0;
-     background: #e3e6ea; border: 1px solid #e3e6ea; }
-dl div { background: #fff; padding: .6rem .8rem; }
+dl { display: grid; grid-template-columns: repeat(auto-fill, minmax(165px, 1fr)); gap: 0 16px; margin: 0; }
+dl div { border-top: 1px solid #e3e6ea; padding: .4rem 0 .6rem; }
 dt { font-size: .8rem; color: #5c6570; }
 dd { margin: 0; font-size: 1.15rem; font-weight: bold; }
 dd small { display: block; font-size: .75rem; font-weight: normal; color: #5c6570; }
 .bad dd { color: #c42b1c; }
 figure { margin: 0; }
-svg { display: block; width: 100%; height: auto; }
-.table { overflow-x: auto; }
+figure div, .table { overflow-x: auto; }
+svg { display: block; width: 100%; min-width: 620px; height: auto; }
 table { border-collapse: collapse; font-size: .85rem; width: 100%; }
 th, td { padding: .25rem .7rem; text-align: left; border-bottom: 1px solid #e3e6ea; }
 th { border-bottom: 2px solid #8a939e; vertical-align: bottom; }
 .n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-footer { margin-top: 2.5rem; border-top: 1px solid #e3e6ea; padding-top: .75rem; }
+footer { margin-top: 2.5rem; border-top: 1px solid #e3e6ea; padding-top: .75rem; overflow-wrap: anywhere; }
 @media print { body { max-width: none; padding: 0; font-size: 11pt; }
                figure, tr, dl div { break-inside: avoid; } h2 { break-after: avoid; } }
 )";
@@ -83,7 +82,7 @@ std::string to_html(const Report& report) {
   html += facts_html(report.facts);
   for (const Figure& figure : report.figures) {
     html += "<figure>\n" + element("h2", figure.title) + element("p", figure.caption, "caption") +
-            figure.drawing.inline_text() + "</figure>\n";
+            "<div>\n" + figure.drawing.inline_text() + "</div>\n</figure>\n";
   }
   for (const Table& table : report.tables) html += table_html(table);
   return html + element("footer", report.origin) + "</body>\n</html>\n";

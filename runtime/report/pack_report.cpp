@@ -70,7 +70,7 @@ Table table_of(const PackReport& map) {
                                              : static_cast<double>(zone.charged_bytes) /
                                                    static_cast<double>(zone.signatures);
     table.rows.push_back({zone.name, zone.zone_type, zone.label,
-                          format_number(area_m2(zone.polygon), 1), format_count(zone.signatures),
+                          format_fixed(area_m2(zone.polygon), 1), format_count(zone.signatures),
                           format_count(zone.features), format_count(zone.charged_bytes),
                           format_count(zone.stored_bytes),
                           zone.signatures == 0 ? "" : format_bytes(each)});

@@ -2,6 +2,7 @@
 #include "runtime/report/plan_label.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "runtime/pack_format/geometry.hpp"
@@ -13,6 +14,7 @@ constexpr int kGrid = 28;
 constexpr double kLeastClearance = 1.5;  // pixels between label and border
 constexpr double kEnoughClearance = 10;  // more is no better
 constexpr double kPointCost = 1.5;       // clearance worth giving up to keep one point readable
+constexpr double kSpareCost = 0.8;
 constexpr double kAround = 4;            // pixels around the label that points should leave free
 constexpr double kOffCenterCost = 0.02;  // a pixel
 
@@ -59,6 +61,16 @@ double clearance(const Polygon& polygon, const PxBox& box) noexcept {
   return least;
 }
 
+LabelGround within(const PxBox& area, const LabelGround& everything) {
+  LabelGround ground;
+  const auto is_inside = [&](Px p) { return inside(area, p); };
+  std::ranges::copy_if(everything.taken, std::back_inserter(ground.taken),
+                       [&](const PxBox& box) { return overlap(area, box); });
+  std::ranges::copy_if(everything.keep, std::back_inserter(ground.keep), is_inside);
+  std::ranges::copy_if(everything.spare, std::back_inserter(ground.spare), is_inside);
+  return ground;
+}
+
 }  // namespace
 
 PxBox box_around(Px center, double width, double height) noexcept {
@@ -67,12 +79,13 @@ PxBox box_around(Px center, double width, double height) noexcept {
 }
 
 std::optional<PlacedLabel> place_label(std::span<const std::vector<Px>> rings, double width,
-                                       double height, std::span<const PxBox> taken,
-                                       std::span<const Px> avoid) {
+                                       double height, const LabelGround& everything) {
   if (rings.empty() || rings[0].size() < 3) return std::nullopt;
   const Polygon polygon = as_polygon(rings);
   const Box2 area = bounds(polygon.outer);
   const Point2 middle{(area.min.x_m + area.max.x_m) / 2, (area.min.y_m + area.max.y_m) / 2};
+  const LabelGround ground =
+      within({{area.min.x_m, area.min.y_m}, {area.max.x_m, area.max.y_m}}, everything);
   std::optional<PlacedLabel> best;
   double best_score = -std::numeric_limits<double>::infinity();
   for (int row = 1; row < kGrid; ++row) {
@@ -81,15 +94,19 @@ std::optional<PlacedLabel> place_label(std::span<const std::vector<Px>> rings, d
                       area.min.y_m + (area.max.y_m - area.min.y_m) * row / kGrid};
       const PxBox box = box_around(center, width, height);
       if (side_of(polygon, as_point(center)) != Side::kInside) continue;
-      if (std::ranges::any_of(taken, [&](const PxBox& other) { return overlap(box, other); })) {
+      if (std::ranges::any_of(ground.taken,
+                              [&](const PxBox& other) { return overlap(box, other); })) {
         continue;
       }
       const double free = clearance(polygon, box);
       if (free < kLeastClearance) continue;
       const PxBox around = box_around(center, width + 2 * kAround, height + 2 * kAround);
-      const auto hidden = std::ranges::count_if(avoid, [&](Px p) { return inside(around, p); });
+      const auto is_near = [&](Px p) { return inside(around, p); };
+      const auto hidden = std::ranges::count_if(ground.keep, is_near);
+      const auto spare = std::ranges::count_if(ground.spare, is_near);
       const double score = std::min(free, kEnoughClearance) -
                            kPointCost * static_cast<double>(hidden) -
+                           kSpareCost * static_cast<double>(spare) -
                            kOffCenterCost * distance_m(middle, as_point(center));
       if (score > best_score) {
         best_score = score;

@@ -14,17 +14,23 @@ struct PxBox {
   Px min, max;
 };
 
-struct PlacedLabel {
-  Px center;
-  std::size_t hidden = 0;  // `avoid` points beneath it
+// What labels share the page with.
+struct LabelGround {
+  std::vector<PxBox> taken;  // other labels: never overlapped
+  std::vector<Px> keep;      // better not hidden: routes, portals
+  std::vector<Px> spare;     // not hidden where that costs nothing: signatures
 };
 
-// Where a label of this size stands wholly inside the area (rings by the even-odd rule), off the
-// boxes already taken, hiding few `avoid` points, far from the border and central. Nothing when it
-// fits nowhere. Looks at a grid of places: O(grid * (edges + taken + avoid)).
+struct PlacedLabel {
+  Px center;
+  std::size_t hidden = 0;  // points to keep beneath it
+};
+
+// Where a label of this size stands wholly inside the area (rings by the even-odd rule), off what
+// is taken, hiding little, far from the border and central. Nothing when it fits nowhere. Looks at
+// a grid of places: O(ground + grid * (edges + ground within the area's bounds)).
 std::optional<PlacedLabel> place_label(std::span<const std::vector<Px>> rings, double width,
-                                       double height, std::span<const PxBox> taken,
-                                       std::span<const Px> avoid);
+                                       double height, const LabelGround& ground);
 
 // The box of a label around its centre.
 PxBox box_around(Px center, double width, double height) noexcept;

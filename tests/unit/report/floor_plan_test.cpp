@@ -60,7 +60,7 @@ TEST(PlanView, GivesAPointSomeRoom) {
 TEST(PlanLabel, StandsInsideTheAreaAndOffItsHole) {
   const std::vector<std::vector<Px>> rings = {{{0, 0}, {100, 0}, {100, 40}, {0, 40}},
                                               {{30, 0.5}, {70, 0.5}, {70, 39.5}, {30, 39.5}}};
-  const auto place = place_label(rings, 20, 10, {}, {});
+  const auto place = place_label(rings, 20, 10, {});
   ASSERT_TRUE(place.has_value());
   const PxBox label = box_around(place->center, 20, 10);
   EXPECT_TRUE((label.min.x > 0 && label.max.x < 30) || (label.min.x > 70 && label.max.x < 100));
@@ -68,22 +68,36 @@ TEST(PlanLabel, StandsInsideTheAreaAndOffItsHole) {
 
 TEST(PlanLabel, RefusesAnAreaTooSmallForIt) {
   const std::vector<std::vector<Px>> rings = {{{0, 0}, {100, 0}, {100, 9}, {0, 9}}};
-  EXPECT_FALSE(place_label(rings, 20, 10, {}, {}).has_value());
-  EXPECT_FALSE(place_label(std::vector<std::vector<Px>>{}, 20, 10, {}, {}).has_value());
+  EXPECT_FALSE(place_label(rings, 20, 10, {}).has_value());
+  EXPECT_FALSE(place_label(std::vector<std::vector<Px>>{}, 20, 10, {}).has_value());
 }
 
 TEST(PlanLabel, KeepsOffTakenBoxesAndPrefersFreeGround) {
   const std::vector<std::vector<Px>> rings = {{{0, 0}, {100, 0}, {100, 30}, {0, 30}}};
-  const std::vector<PxBox> taken = {{{0, 0}, {50, 30}}};
-  const auto right = place_label(rings, 20, 10, taken, {});
+  LabelGround half_taken;
+  half_taken.taken = {{{0, 0}, {50, 30}}};
+  const auto right = place_label(rings, 20, 10, half_taken);
   ASSERT_TRUE(right.has_value());
   EXPECT_GE(right->center.x - 10, 50);
-  std::vector<Px> route;
-  for (int x = 40; x <= 100; x += 4) route.push_back({static_cast<double>(x), 15});
-  const auto left = place_label(rings, 20, 10, {}, route);
+  LabelGround crossed;
+  for (int x = 40; x <= 100; x += 4) crossed.keep.push_back({static_cast<double>(x), 15});
+  const auto left = place_label(rings, 20, 10, crossed);
   ASSERT_TRUE(left.has_value());
   EXPECT_EQ(left->hidden, 0u);
   EXPECT_LT(left->center.x + 10, 40);
+}
+
+TEST(PlanLabel, GivesWayToSignaturesOnlyWhereItCan) {
+  const std::vector<std::vector<Px>> rings = {{{0, 0}, {100, 0}, {100, 30}, {0, 30}}};
+  LabelGround ground;
+  for (int x = 0; x <= 50; x += 5) ground.spare.push_back({static_cast<double>(x), 15});
+  const auto right = place_label(rings, 20, 10, ground);
+  ASSERT_TRUE(right.has_value());
+  EXPECT_GT(right->center.x - 10, 50);
+  for (int x = 0; x <= 100; x += 5) ground.spare.push_back({static_cast<double>(x), 15});
+  const auto anywhere = place_label(rings, 20, 10, ground);
+  ASSERT_TRUE(anywhere.has_value());
+  EXPECT_EQ(anywhere->hidden, 0u);
 }
 
 TEST(FloorPlan, ShowsZonesPortalsSignaturesAndRoutes) {

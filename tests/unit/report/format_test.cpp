@@ -17,6 +17,11 @@ TEST(Format, NumbersDropZerosButNotDigits) {
   EXPECT_EQ(format_number(1e20, 1), "100000000000000000000");
 }
 
+TEST(Format, FixedNumbersKeepTheirZeros) {
+  EXPECT_EQ(format_fixed(16, 1), "16.0");
+  EXPECT_EQ(format_fixed(0.0004, 2), "0.00");
+}
+
 TEST(Format, WhatIsNotANumberIsADash) {
   EXPECT_EQ(format_number(std::numeric_limits<double>::quiet_NaN(), 2), "-");
   EXPECT_EQ(format_number(-std::numeric_limits<double>::infinity(), 2), "-");

@@ -63,7 +63,7 @@ TEST(PackReport, ListsEveryZone) {
   ASSERT_EQ(page.tables[0].rows.size(), 2u);
   const auto& h1 = page.tables[0].rows[0];
   EXPECT_EQ(h1[0], "H1");
-  EXPECT_EQ(h1[3], "16");  // 8 m x 2 m
+  EXPECT_EQ(h1[3], "16.0");  // 8 m x 2 m
   EXPECT_EQ(h1[4], "16");
   EXPECT_EQ(h1.back(), "64 KiB");  // 1 MiB / 16
   EXPECT_EQ(h1.size(), page.tables[0].columns.size());
