@@ -18,10 +18,22 @@ CanLogReader::CanLogReader(std::string path, std::string interface)
 
 CanLogReader::~CanLogReader() = default;
 
-Result<void> CanLogReader::open() {
+bool CanLogReader::start() {
+  summary_ = {};
+  summary_.interface = interface_;
+  end_ = false;
+  relative_ = false;
   file_.reset(std::fopen(path_.c_str(), "rb"));
-  if (!file_) return {errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kIo, errno};
-  refill();
+  if (file_) refill();
+  return file_ != nullptr;
+}
+
+Result<void> CanLogReader::open() {
+  if (!start()) return {errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kIo, errno};
+  if (count_ == 0 && !other_.empty() && !several_others_) {
+    interface_ = other_;
+    start();
+  }
   if (count_ == 0 && summary_.read_error != 0) return {ErrorCode::kIo, summary_.read_error};
   if (count_ == 0) return {ErrorCode::kBadStructure, static_cast<std::int64_t>(summary_.lines)};
   if (relative_ && stamps_are_differences()) return ErrorCode::kBadValue;
@@ -94,6 +106,8 @@ std::optional<CanLogReader::Item> CanLogReader::read_frame() {
     if (line.kind != CanLogLine::Kind::kFrame) continue;
     if (!interface_.empty() && line.interface != interface_) {
       ++summary_.other_interfaces;
+      if (other_.empty()) other_ = line.interface;
+      several_others_ = several_others_ || line.interface != other_;
       continue;
     }
     relative_ = relative_ || !line.absolute_stamp;

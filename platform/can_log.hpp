@@ -30,6 +30,7 @@ struct CanLogSummary {
   std::uint64_t stray_stamps = 0;     // frames left out: stamp far in the future of both neighbours
   std::uint64_t unsorted_stamps = 0;  // frames with a stamp before the latest one so far
   std::uint64_t other_interfaces = 0;  // frames the interface filter left out
+  std::string interface;               // whose frames are given; empty: all
   std::uint64_t error_frames = 0;
   std::uint64_t dropped = 0;  // as DROPCOUNT lines tell
   int read_error = 0;         // errno that ended the file early; 0: read to its end
@@ -46,7 +47,8 @@ class CanLogReader final : public CanFrameSource {
  public:
   static constexpr std::size_t kMostFaults = 20;
 
-  // interface: "can0" gives only that bus's frames; empty gives all.
+  // interface: "can0" gives only that bus's frames; empty gives all. A recording of one other bus
+  // and none of this one is taken as this one's: the same bus has other names on other machines.
   explicit CanLogReader(std::string path, std::string interface = {});
   ~CanLogReader() override;
 
@@ -81,6 +83,7 @@ class CanLogReader final : public CanFrameSource {
   std::optional<Item> read_frame();
   void refill();
   void note(std::uint64_t line, std::string_view what, std::string_view text);
+  bool start();
   bool stamps_are_differences() const noexcept;
   bool is_stray(const Item& item) const noexcept;
 
@@ -93,6 +96,8 @@ class CanLogReader final : public CanFrameSource {
   std::size_t count_ = 0;
   bool end_ = false;
   bool relative_ = false;
+  std::string other_;  // the first interface left out
+  bool several_others_ = false;
   bool given_ = false;
   std::int64_t latest_ns_ = 0;  // largest stamp given out
   std::uint64_t dropped_before_ = 0;

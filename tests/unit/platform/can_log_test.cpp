@@ -68,6 +68,15 @@ TEST_F(CanLog, GivesOnlyTheWantedInterface) {
   EXPECT_EQ(ids(all), (std::vector<std::uint32_t>{1, 2, 3}));
 }
 
+TEST_F(CanLog, TakesARecordingOfOneOtherBusAsTheWantedOne) {
+  write("(1.0) vcan7 001#\n(1.2) vcan7 003#\n");
+  CanLogReader reader(path_, "can0");
+  ASSERT_TRUE(reader.open().ok());
+  EXPECT_EQ(reader.summary().interface, "vcan7");
+  EXPECT_EQ(ids(reader), (std::vector<std::uint32_t>{1, 3}));
+  EXPECT_EQ(reader.summary().lines, 2u);
+}
+
 TEST_F(CanLog, KeepsTheOrderOfTheFileAndCountsStampsThatStepBack) {
   write(
       "(10.0) can0 001#\n(10.3) can0 002#\n(10.1) can0 003#\n(10.2) can0 004#\n(10.4) can0 005#\n");
@@ -115,7 +124,7 @@ TEST_F(CanLog, RefusesAFileWithoutAFrameAndSaysWhatItExpected) {
     EXPECT_EQ(opened.error().code, ErrorCode::kBadStructure);
     EXPECT_NE(reader.explain(opened.error()).find("can0 311#"), std::string::npos);
   }
-  write("(1.0) can1 001#\n");
+  write("(1.0) can1 001#\n(1.0) can2 001#\n");
   CanLogReader filtered(path_, "can0");
   const Result<void> opened = filtered.open();
   EXPECT_NE(filtered.explain(opened.error()).find("other interfaces than can0"), std::string::npos);

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "runtime/settings/settings.hpp"
+
+namespace zonepack {
+
+// One key of a section: its name, where its value goes, what is allowed, what it means. Numbers lie
+// in [least, most]; other kinds do not look at them.
+template <typename Section>
+struct Field {
+  using Member =
+      std::variant<double Section::*, std::uint32_t Section::*, std::uint64_t Section::*,
+                   bool Section::*, std::string Section::*, std::vector<std::string> Section::*,
+                   std::optional<ByteCount> Section::*, PayloadChoice Section::*,
+                   OdometryModel Section::*, WheelUnit Section::*, ByteOrder Section::*,
+                   SignalType Section::*>;
+  const char* key;
+  Member member;
+  double least;
+  double most;
+  const char* unit;
+  const char* meaning;
+};
+
+template <typename Section>
+using Fields = std::vector<Field<Section>>;
+
+// The words of an enumeration, in the order of its values.
+template <typename Enum>
+struct EnumWords;
+template <>
+struct EnumWords<OdometryModel> {
+  static constexpr const char* kWords[] = {"differential-positions", "wheel-speeds", "twist"};
+};
+template <>
+struct EnumWords<WheelUnit> {
+  static constexpr const char* kWords[] = {"metres", "radians", "turns"};
+};
+template <>
+struct EnumWords<ByteOrder> {
+  static constexpr const char* kWords[] = {"little", "big"};
+};
+template <>
+struct EnumWords<SignalType> {
+  static constexpr const char* kWords[] = {"unsigned", "signed", "float", "double"};
+};
+
+// A signal as it stands in the file; defaults out of range must be given.
+struct SignalText {
+  std::uint32_t id = 0xFFFFFFFF;
+  bool extended = false;
+  std::uint32_t start = 0;
+  std::uint32_t length = 0;
+  ByteOrder byte_order = ByteOrder::kLittle;
+  SignalType type = SignalType::kUnsigned;
+  double factor = 1;
+  double offset = 0;
+};
+struct MultiplexText {
+  std::uint32_t start = 0;
+  std::uint32_t length = 0;
+  ByteOrder byte_order = ByteOrder::kLittle;
+  std::uint64_t value = 0;
+};
+
+// The tables (settings_tables.cpp).
+const Fields<MapSettings>& map_fields();
+const Fields<MemorySettings>& memory_fields();
+const Fields<LoadingSettings>& loading_fields();
+const Fields<CanSettings>& can_fields();
+const Fields<SignalText>& signal_fields();
+const Fields<MultiplexText>& multiplex_fields();
+const Fields<OdometrySettings>& odometry_fields();
+const Fields<WheelOdometrySettings>& wheel_fields();  // keys of the section odometry, too
+const Fields<PoseFilterSettings>& pose_fields();
+const Fields<TrackerSettings>& zones_fields();
+const Fields<PreloadSettings>& preload_fields();
+const Fields<CycleSettings>& cycle_fields();
+
+}  // namespace zonepack

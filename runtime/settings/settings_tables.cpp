@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/settings/field.hpp"
+
+namespace zonepack {
+
+constexpr double kMost = 9e15;  // no limit to speak of
+
+const Fields<MapSettings>& map_fields() {
+  using S = MapSettings;
+  static const Fields<S> fields = {
+      {"path", &S::path, 0, 0, "", "folder of the map; --map replaces it"},
+  };
+  return fields;
+}
+
+const Fields<MemorySettings>& memory_fields() {
+  using S = MemorySettings;
+  static const Fields<S> fields = {
+      {"budget", &S::budget, 0, 0, "",
+       "hard limit of everything that grows with the map; --budget"},
+      {"max_signatures", &S::max_signatures, 0, kMost, "signatures",
+       "most signatures resident at once, 0 for no limit; --max-signatures"},
+      {"payload", &S::payload, 0, 0, "", "what is loaded of every signature"},
+      {"pinned", &S::pinned, 0, 0, "", "names of zones that are never unloaded"},
+  };
+  return fields;
+}
+
+const Fields<LoadingSettings>& loading_fields() {
+  using S = LoadingSettings;
+  static const Fields<S> fields = {
+      {"storage_rate", &S::storage_rate, 1000, 1e12, "bytes/s", "reading of packs; --storage-rate"},
+      {"decode_rate", &S::decode_rate, 1000, 1e12, "bytes/s", "decoding, of decoded bytes"},
+  };
+  return fields;
+}
+
+const Fields<CanSettings>& can_fields() {
+  using S = CanSettings;
+  static const Fields<S> fields = {
+      {"interface", &S::interface, 0, 0, "", "bus whose frames are read, empty for any"},
+  };
+  return fields;
+}
+
+const Fields<SignalText>& signal_fields() {
+  using S = SignalText;
+  static const Fields<S> fields = {
+      {"id", &S::id, 0, 0x1FFFFFFF, "", "CAN id, 0x for hexadecimal"},
+      {"extended", &S::extended, 0, 0, "", "29-bit id"},
+      {"start", &S::start, 0, 511, "", "DBC start bit: the lowest (little) or highest bit (big)"},
+      {"length", &S::length, 1, 64, "bits", "length"},
+      {"byte_order", &S::byte_order, 0, 0, "", "little is Intel, big is Motorola"},
+      {"type", &S::type, 0, 0, "", "how the bits are read"},
+      {"factor", &S::factor, -kMost, kMost, "", "value = raw * factor + offset; not 0"},
+      {"offset", &S::offset, -kMost, kMost, "", "see factor"},
+  };
+  return fields;
+}
+
+const Fields<MultiplexText>& multiplex_fields() {
+  using S = MultiplexText;
+  static const Fields<S> fields = {
+      {"start", &S::start, 0, 511, "", "as of a signal"},
+      {"length", &S::length, 1, 64, "bits", "as of a signal"},
+      {"byte_order", &S::byte_order, 0, 0, "", "as of a signal"},
+      {"value", &S::value, 0, kMost, "", "the signal is there when the multiplexer has this value"},
+  };
+  return fields;
+}
+
+const Fields<OdometrySettings>& odometry_fields() {
+  using S = OdometrySettings;
+  static const Fields<S> fields = {
+      {"unit", &S::unit, 0, 0, "", "of wheel signals (per second, for speeds)"},
+      {"wheel_radius", &S::wheel_radius_m, 0.001, 10, "m", "for radians and turns"},
+      {"scale", &S::scale, 0.5, 2, "", "true over reported distance, from a calibration run"},
+      {"left", &S::left, 0, 0, "", "signal of the left wheel, in can.signals"},
+      {"right", &S::right, 0, 0, "", "signal of the right wheel"},
+      {"forward", &S::forward, 0, 0, "", "twist: signal of the forward speed, m/s"},
+      {"yaw_rate", &S::yaw_rate, 0, 0, "", "twist: signal of the yaw rate, rad/s"},
+  };
+  return fields;
+}
+
+const Fields<WheelOdometrySettings>& wheel_fields() {
+  using S = WheelOdometrySettings;
+  static const Fields<S> fields = {
+      {"model", &S::model, 0, 0, "", "what the signals tell"},
+      {"track", &S::track_m, 0.01, 20, "m", "between the wheels' contact points"},
+      {"max_speed", &S::max_speed_m_s, 0.01, 100, "m/s", "more is refused"},
+      {"max_yaw_rate", &S::max_yaw_rate_rad_s, 0.01, 100, "rad/s", "more is refused"},
+      {"max_acceleration", &S::max_acceleration_m_s2, 0.1, 1000, "m/s2",
+       "of a wheel from sample to sample; more is refused"},
+      {"gap", &S::gap_s, 0.01, 60, "s", "a longer pause between samples is a gap"},
+      {"timeout", &S::timeout_s, 0.01, 60, "s", "without samples for so long, uncertainty grows"},
+      {"sigma_forward_per_sqrt_m", &S::sigma_forward_per_sqrt_m, 0, 10, "m", "noise of 1 m: along"},
+      {"sigma_sideways_per_sqrt_m", &S::sigma_sideways_per_sqrt_m, 0, 10, "m",
+       "noise of 1 m: across (slip)"},
+      {"sigma_yaw_per_sqrt_m", &S::sigma_yaw_per_sqrt_m, 0, 10, "rad", "noise of 1 m: heading"},
+      {"sigma_forward_per_sqrt_rad", &S::sigma_forward_per_sqrt_rad, 0, 10, "m",
+       "noise of a turn by 1 rad: along"},
+      {"sigma_yaw_per_sqrt_rad", &S::sigma_yaw_per_sqrt_rad, 0, 10, "rad",
+       "noise of a turn by 1 rad: heading"},
+      {"sigma_gap_per_m", &S::sigma_gap_per_m, 0, 10, "",
+       "positions: share of a gap's length that its end may be off"},
+      {"sigma_gap_per_s", &S::sigma_gap_m_per_s, 0, 100, "m/s",
+       "speeds, and positions that jumped: distance that may be missing"},
+      {"sigma_gap_yaw_per_s", &S::sigma_gap_rad_per_s, 0, 100, "rad/s", "the same for the heading"},
+  };
+  return fields;
+}
+
+const Fields<PoseFilterSettings>& pose_fields() {
+  using S = PoseFilterSettings;
+  static const Fields<S> fields = {
+      {"gate", &S::gate_chi2, 1, 1000, "",
+       "squared Mahalanobis distance up to which a fix is believed; chi2 of 3 dof: 16.27 is 99.9 "
+       "%"},
+      {"history", &S::history_s, 0.1, 60, "s", "how late a fix may come"},
+      {"history_step", &S::history_step_s, 0.001, 1, "s", "shorter odometry steps share an entry"},
+      {"future_tolerance", &S::future_tolerance_s, 0, 10, "s", "how far ahead a stamp may be"},
+      {"min_sigma", &S::min_sigma_m, 1e-6, 10, "m", "a fix is never believed to be better"},
+      {"min_sigma_yaw", &S::min_sigma_rad, 1e-6, 3, "rad", "the same for its heading"},
+      {"reinit_fixes", &S::reinit_fixes, 2, 100, "",
+       "refused fixes that agree with each other and then move the pose"},
+      {"start_sigma", &S::start_sigma_m, 0.001, 1000, "m", "of a start pose that was given"},
+      {"start_sigma_yaw", &S::start_sigma_rad, 0.001, 10, "rad", "the same for its heading"},
+      {"drift_sigma_per_sqrt_s", &S::drift_sigma_m_per_sqrt_s, 0, 100, "m",
+       "growth in 1 s without odometry"},
+      {"drift_sigma_yaw_per_sqrt_s", &S::drift_sigma_rad_per_sqrt_s, 0, 100, "rad",
+       "the same for the heading"},
+      {"speed_filter", &S::speed_filter_s, 0, 10, "s", "time constant of the speeds"},
+      {"extrapolate", &S::extrapolate_s, 0, 1, "s",
+       "how far the newest odometry is carried on to now"},
+  };
+  return fields;
+}
+
+const Fields<TrackerSettings>& zones_fields() {
+  using S = TrackerSettings;
+  static const Fields<S> fields = {
+      {"least_depth", &S::least_depth_m, 0, 10, "m",
+       "how deep in a neighbour the pose must be: one sigma, but at least this ..."},
+      {"most_depth", &S::most_depth_m, 0, 10, "m", "... and at most this"},
+      {"wall_depth", &S::wall_depth_m, 0, 10, "m", "where no portal leads: this plus three sigma"},
+      {"start_radius", &S::start_radius_m, 0, 100, "m",
+       "a pose outside of all zones starts in one within this plus three sigma"},
+  };
+  return fields;
+}
+
+const Fields<PreloadSettings>& preload_fields() {
+  using S = PreloadSettings;
+  static const Fields<S> fields = {
+      {"margin", &S::margin_m, 0, 10, "m",
+       "beside three sigma: how far ahead a zone must be ready"},
+      {"motion_average", &S::motion_average_s, 0, 10, "s", "over which the motion is smoothed"},
+      {"standing", &S::standing_m_s, 0, 10, "m/s", "slower than this is standing"},
+      {"hold", &S::hold_s, 0, 60, "s", "an approach not seen for so long is given up"},
+      {"most_turn", &S::most_turn_rad, 0, 6.3, "rad", "how far an arc is trusted"},
+      {"most_reach", &S::most_reach_m, 0, 1000, "m", "how far a path is followed"},
+  };
+  return fields;
+}
+
+const Fields<CycleSettings>& cycle_fields() {
+  using S = CycleSettings;
+  static const Fields<S> fields = {
+      {"period_hz", &S::period_hz, 1, 1000, "Hz", "control cycles per second"},
+      {"most_frames", &S::most_frames, 1, 4096, "", "CAN frames taken in one cycle; others wait"},
+  };
+  return fields;
+}
+
+}  // namespace zonepack

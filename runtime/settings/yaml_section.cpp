@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/settings/yaml_section.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace zonepack {
+namespace {
+
+std::string quoted(std::string_view text) {
+  return std::string(1, '"').append(text.substr(0, 60)).append(1, '"');
+}
+
+// What stands there, for a message.
+std::string shown(const YAML::Node& node) {
+  if (node.IsScalar()) return quoted(node.Scalar());
+  if (node.IsSequence()) return "a list";
+  if (node.IsMap()) return "a section";
+  return "nothing";
+}
+
+// An unquoted scalar.
+bool is_plain(const YAML::Node& node) { return node.IsScalar() && node.Tag() != "!"; }
+
+bool parse_double(std::string_view text, double& value) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+}
+
+bool parse_integer(std::string_view text, std::uint64_t& value) {
+  const int base = text.starts_with("0x") || text.starts_with("0X") ? 16 : 10;
+  if (base == 16) text.remove_prefix(2);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+template <typename Enum>
+std::string parse_word(const YAML::Node& node, Enum& value) {
+  std::string words;
+  std::uint8_t number = 0;
+  for (const char* word : EnumWords<Enum>::kWords) {
+    if (node.IsScalar() && node.Scalar() == word) {
+      value = static_cast<Enum>(number);
+      return {};
+    }
+    words += (number++ == 0 ? "" : ", ") + std::string(word);
+  }
+  return shown(node) + " is not one of: " + words;
+}
+
+// Insertions, deletions and replacements that lead from one word to the other.
+std::size_t edits(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+constexpr std::uint32_t kFirstChoice = 1;  // kind 0, the core, is always loaded
+
+const char* kind_word(std::uint32_t kind) { return to_string(static_cast<fb::PayloadKind>(kind)); }
+
+}  // namespace
+
+void FaultList::add(const YAML::Mark& mark, const std::string& path, const std::string& text) {
+  std::string fault = file_;
+  if (!mark.is_null()) fault += ":" + std::to_string(mark.line + 1);
+  fault += ": ";
+  if (!path.empty()) fault += path + ": ";
+  faults_.push_back(fault + text);
+}
+
+YamlSection::YamlSection(const YAML::Node& node, std::string path, FaultList& faults)
+    : path_(std::move(path)), faults_(faults), mark_(node.Mark()) {
+  if (!node.IsDefined() || node.IsNull()) return;
+  if (!node.IsMap()) {
+    faults_.add(mark_, path_, shown(node) + " where keys with values are expected");
+    return;
+  }
+  for (const auto& entry : node) {
+    if (!entry.first.IsScalar()) {
+      faults_.add(entry.first.Mark(), path_, "a key must be a word");
+      continue;
+    }
+    const std::string& key = entry.first.Scalar();
+    const auto same = std::find_if(entries_.begin(), entries_.end(),
+                                   [&](const auto& other) { return other.first == key; });
+    if (same != entries_.end()) {
+      const auto first = key_marks_[static_cast<std::size_t>(same - entries_.begin())];
+      faults_.add(entry.first.Mark(), path_of(key),
+                  "stands here twice, first on line " + std::to_string(first.line + 1));
+      continue;
+    }
+    entries_.emplace_back(key, entry.second);
+    key_marks_.push_back(entry.first.Mark());
+    asked_.push_back(false);
+  }
+}
+
+std::string YamlSection::path_of(std::string_view key) const {
+  return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
+}
+
+YAML::Node YamlSection::take(std::string_view key) {
+  known_.emplace_back(key);
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (entries_[i].first != key) continue;
+    asked_[i] = true;
+    return entries_[i].second;
+  }
+  return YAML::Node(YAML::NodeType::Undefined);
+}
+
+void YamlSection::finish() {
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (asked_[i]) continue;
+    const std::string& key = entries_[i].first;
+    const std::string* nearest = nullptr;
+    std::size_t least = key.size() / 3 + 2;
+    std::string all;
+    for (const std::string& word : known_) {
+      all += (all.empty() ? "" : ", ") + word;
+      if (const std::size_t distance = edits(key, word); distance < least) {
+        least = distance;
+        nearest = &word;
+      }
+    }
+    std::string text = "unknown key";
+    if (nearest != nullptr) text += "; did you mean " + quoted(*nearest) + "?";
+    faults_.add(key_marks_[i], path_of(key), text + (nearest ? " Known: " : "; known: ") + all);
+  }
+}
+
+std::string YamlSection::parse(const YAML::Node& node, double least, double most, const char* unit,
+                               double& value) {
+  double number = 0;
+  if (!is_plain(node) || !parse_double(node.Scalar(), number)) {
+    return shown(node) + " is not a number; allowed: " + allowed_text(least, most, unit);
+  }
+  if (number < least || number > most) {
+    return node.Scalar() + " is out of range; allowed: " + allowed_text(least, most, unit);
+  }
+  value = number;
+  return {};
+}
+
+std::string YamlSection::parse(const YAML::Node& node, double least, double most, const char* unit,
+                               std::uint64_t& value) {
+  std::uint64_t number = 0;
+  if (!is_plain(node) || !parse_integer(node.Scalar(), number)) {
+    double real = 0;
+    const bool low = is_plain(node) && parse_double(node.Scalar(), real) && real < least;
+    return shown(node) + (low ? " is out of range" : " is not a whole number") +
+           "; allowed: " + allowed_text(least, most, unit);
+  }
+  if (static_cast<double>(number) < least || static_cast<double>(number) > most) {
+    return node.Scalar() + " is out of range; allowed: " + allowed_text(least, most, unit);
+  }
+  value = number;
+  return {};
+}
+
+std::string YamlSection::parse(const YAML::Node& node, double least, double most, const char* unit,
+                               std::uint32_t& value) {
+  std::uint64_t wide = 0;
+  std::string wrong = parse(node, least, std::min(most, 4294967295.0), unit, wide);
+  if (wrong.empty()) value = static_cast<std::uint32_t>(wide);
+  return wrong;
+}
+
+std::string YamlSection::parse(const YAML::Node& node, double, double, const char*, bool& value) {
+  if (!is_plain(node) || (node.Scalar() != "true" && node.Scalar() != "false")) {
+    return shown(node) + " is not true or false";
+  }
+  value = node.Scalar() == "true";
+  return {};
+}
+
+std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                               std::string& value) {
+  if (node.IsNull()) {
+    value.clear();
+    return {};
+  }
+  if (!node.IsScalar()) return shown(node) + " where a text is expected";
+  value = node.Scalar();
+  return {};
+}
+
+std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                               std::vector<std::string>& value) {
+  if (!node.IsSequence() && !node.IsNull()) return shown(node) + " where a list [a, b] is expected";
+  value.clear();
+  for (const YAML::Node& item : node) {
+    if (!item.IsScalar()) return shown(item) + " in a list of texts";
+    value.push_back(item.Scalar());
+  }
+  return {};
+}
+
+std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                               std::optional<ByteCount>& value) {
+  const std::optional<ByteCount> size =
+      node.IsScalar() ? parse_byte_count(node.Scalar()) : std::nullopt;
+  if (!size || *size == 0) {
+    return shown(node) +
+           " is not a size; allowed: a whole number of bytes over 0, or with KiB, MiB or GiB "
+           "(24MiB)";
+  }
+  value = size;
+  return {};
+}
+
+std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                               PayloadChoice& value) {
+  const std::string allowed = "; allowed: a list of " + payload_words(kEveryPayload);
+  if (!node.IsSequence()) return shown(node) + " where a list is expected" + allowed;
+  PayloadMask mask = kCoreOnly;
+  for (const YAML::Node& item : node) {
+    std::uint32_t kind = kFirstChoice;
+    while (kind < kPayloadKinds && !(item.IsScalar() && item.Scalar() == kind_word(kind))) ++kind;
+    if (kind == kPayloadKinds) return shown(item) + " is not a payload" + allowed;
+    mask |= PayloadMask{1} << kind;
+  }
+  value.mask = mask;
+  return {};
+}
+
+std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                               OdometryModel& value) {
+  return parse_word(node, value);
+}
+std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                               WheelUnit& value) {
+  return parse_word(node, value);
+}
+std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                               ByteOrder& value) {
+  return parse_word(node, value);
+}
+std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                               SignalType& value) {
+  return parse_word(node, value);
+}
+
+std::string number_text(double value) {
+  const double size = std::abs(value);
+  const bool handy = size == 0 || (size >= 1e-4 && size < 1e10);
+  char text[32];
+  const auto format = handy ? std::chars_format::fixed : std::chars_format::scientific;
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value, format);
+  return {text, end};
+}
+
+std::string allowed_text(double least, double most, const char* unit) {
+  std::string text = number_text(least) + " to " + number_text(most);
+  if (*unit != '\0') text += " " + std::string(unit);
+  return text;
+}
+
+std::string payload_words(PayloadMask mask) {
+  std::string words;
+  for (std::uint32_t kind = kFirstChoice; kind < kPayloadKinds; ++kind) {
+    if ((mask >> kind & 1u) != 0)
+      words += (words.empty() ? "" : ", ") + std::string(kind_word(kind));
+  }
+  return words;
+}
+
+}  // namespace zonepack

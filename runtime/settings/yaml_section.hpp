@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "runtime/settings/field.hpp"
+
+namespace zonepack {
+
+// Collects what is wrong with a file, in the order it was found.
+class FaultList {
+ public:
+  explicit FaultList(std::string file) : file_(std::move(file)) {}
+
+  // "file:line: path: text"; without a path "file:line: text", without a place "file: text".
+  void add(const YAML::Mark& mark, const std::string& path, const std::string& text);
+
+  std::vector<std::string> take() { return std::move(faults_); }
+  std::size_t size() const noexcept { return faults_.size(); }
+
+ private:
+  std::string file_;
+  std::vector<std::string> faults_;
+};
+
+// A mapping of a YAML file, read strictly: what nobody asked for by finish() is a fault, and so is
+// a key that stands there twice. Works on any node; one that is not a mapping is a fault of its
+// own.
+class YamlSection {
+ public:
+  // path: "odometry", empty for the whole file.
+  YamlSection(const YAML::Node& node, std::string path, FaultList& faults);
+
+  // The value of a key, or an undefined node. The key counts as known from here on.
+  YAML::Node take(std::string_view key);
+
+  // Reads every field that is there into `into`; the others keep their values.
+  template <typename Section>
+  void read(const Fields<Section>& fields, Section& into) {
+    for (const Field<Section>& field : fields) {
+      const YAML::Node node = take(field.key);
+      if (!node.IsDefined()) continue;
+      std::visit(
+          [&](auto member) {
+            const std::string wrong =
+                parse(node, field.least, field.most, field.unit, into.*member);
+            if (!wrong.empty()) faults_.add(node.Mark(), path_of(field.key), wrong);
+          },
+          field.member);
+    }
+  }
+
+  // Names every key that was not asked for, with the nearest known one.
+  void finish();
+
+  // All keys with their values, for mappings whose keys are names.
+  const std::vector<std::pair<std::string, YAML::Node>>& entries() const noexcept {
+    return entries_;
+  }
+
+  std::string path_of(std::string_view key) const;
+  YAML::Mark mark() const { return mark_; }
+
+ private:
+  // What is wrong with the value, empty when it was stored.
+  static std::string parse(const YAML::Node&, double least, double most, const char* unit, double&);
+  static std::string parse(const YAML::Node&, double, double, const char*, std::uint32_t&);
+  static std::string parse(const YAML::Node&, double, double, const char*, std::uint64_t&);
+  static std::string parse(const YAML::Node&, double, double, const char*, bool&);
+  static std::string parse(const YAML::Node&, double, double, const char*, std::string&);
+  static std::string parse(const YAML::Node&, double, double, const char*,
+                           std::vector<std::string>&);
+  static std::string parse(const YAML::Node&, double, double, const char*,
+                           std::optional<ByteCount>&);
+  static std::string parse(const YAML::Node&, double, double, const char*, PayloadChoice&);
+  static std::string parse(const YAML::Node&, double, double, const char*, OdometryModel&);
+  static std::string parse(const YAML::Node&, double, double, const char*, WheelUnit&);
+  static std::string parse(const YAML::Node&, double, double, const char*, ByteOrder&);
+  static std::string parse(const YAML::Node&, double, double, const char*, SignalType&);
+
+  std::string path_;
+  FaultList& faults_;
+  YAML::Mark mark_;
+  std::vector<std::pair<std::string, YAML::Node>> entries_;
+  std::vector<YAML::Mark> key_marks_;
+  std::vector<bool> asked_;
+  std::vector<std::string> known_;
+};
+
+// "4", "0.413", "1e+12": the shortest text that reads back as the same number.
+std::string number_text(double value);
+
+// Words by which a field's allowed values are told: "0.01 to 20 m", "one of: little, big".
+std::string allowed_text(double least, double most, const char* unit);
+std::string payload_words(PayloadMask mask);
+
+}  // namespace zonepack
