@@ -22,14 +22,17 @@ class PortalPlacer {
     for (std::uint32_t i = 0; i < plan.zones.size(); ++i) zone_at_[plan.zones[i].name] = i;
     for (const DrawnZone& drawn : drawing.zones) drawn_names_.insert(drawn.zone.name);
     for (const DrawnPortal& portal : drawing.portals) {
-      if (!portal.name.empty()) names_.emplace(portal.name, portal.feature);
+      if (portal.name.empty()) continue;
+      first_named_.emplace(portal.name, portal.feature);
+      taken_.insert(portal.name);
     }
   }
 
   void place(const DrawnPortal& drawn) {
     drawn_ = &drawn;
-    if (!drawn.name.empty() && names_.at(drawn.name) != drawn.feature) {
-      fault("has the name of feature " + std::to_string(names_.at(drawn.name)) + "; rename one");
+    if (!drawn.name.empty() && first_named_.at(drawn.name) != drawn.feature) {
+      fault("has the name of feature " + std::to_string(first_named_.at(drawn.name)) +
+            "; rename one");
     }
     bool known = true;
     for (const std::string& zone : drawn.zones) {
@@ -46,7 +49,10 @@ class PortalPlacer {
     const auto a = zone_at_.find(drawn.zones[0]), b = zone_at_.find(drawn.zones[1]);
     if (a == zone_at_.end() || b == zone_at_.end()) return;  // the zone itself is faulty
     if (const auto segment = on_border(a->second, b->second)) {
-      plan_.portals.push_back({fresh_name(), a->second, b->second, *segment});
+      std::string name = drawn.name.empty()
+                             ? fresh_portal_name(drawn.zones[0], drawn.zones[1], taken_)
+                             : drawn.name;
+      plan_.portals.push_back({std::move(name), a->second, b->second, *segment});
     }
   }
 
@@ -72,14 +78,6 @@ class PortalPlacer {
       if (folded(name) == folded(wanted)) return " (is it '" + name + "'?)";
     }
     return "";
-  }
-
-  std::string fresh_name() {
-    if (!drawn_->name.empty()) return drawn_->name;
-    for (std::size_t number = 1;; ++number) {
-      std::string name = portal_name(drawn_->zones[0], drawn_->zones[1], number);
-      if (names_.emplace(name, drawn_->feature).second) return name;
-    }
   }
 
   std::optional<Segment2> on_border(std::uint32_t a, std::uint32_t b) {
@@ -118,7 +116,8 @@ class PortalPlacer {
   Findings& findings_;
   std::map<std::string, std::uint32_t> zone_at_;
   std::set<std::string> drawn_names_;
-  std::map<std::string, std::size_t> names_;  // of portals, with the feature that has each first
+  std::map<std::string, std::size_t> first_named_;  // the feature that has each portal name first
+  std::set<std::string> taken_;                     // portal names
   const DrawnPortal* drawn_ = nullptr;
 };
 
@@ -130,14 +129,14 @@ void place_portals(const Drawing& drawing, double snap_m, ZonePlan& plan, Findin
 }
 
 void find_portals(double snap_m, ZonePlan& plan) {
+  std::set<std::string> taken;
   for (std::uint32_t a = 0; a < plan.zones.size(); ++a) {
     for (std::uint32_t b = a + 1; b < plan.zones.size(); ++b) {
       const PlannedZone &zone_a = plan.zones[a], &zone_b = plan.zones[b];
       if (!share_a_height(zone_a, zone_b)) continue;
-      std::size_t number = 0;
       for (const Segment2& piece :
            shared_borders(zone_a.polygon, zone_b.polygon, snap_m, kMinFoundPortal_m)) {
-        plan.portals.push_back({portal_name(zone_a.name, zone_b.name, ++number), a, b, piece});
+        plan.portals.push_back({fresh_portal_name(zone_a.name, zone_b.name, taken), a, b, piece});
       }
     }
   }

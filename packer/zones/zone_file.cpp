@@ -58,6 +58,22 @@ void warn_of_unreachable(const ZonePlan& plan, const Drawing& drawing, Findings&
   }
 }
 
+void check_portal_counts(const ZonePlan& plan, Findings& findings) {
+  std::vector<std::size_t> portals(plan.zones.size());
+  for (const PlannedPortal& portal : plan.portals) {
+    ++portals[portal.zone_a];
+    ++portals[portal.zone_b];
+  }
+  for (std::size_t i = 0; i < portals.size(); ++i) {
+    if (portals[i] <= kMaxPortalsPerZone) continue;
+    const std::string& name = plan.zones[i].name;
+    findings.faults.push_back({std::nullopt, 0, name,
+                               "zone '" + name + "' has " + std::to_string(portals[i]) +
+                                   " portals, at most " + std::to_string(kMaxPortalsPerZone) +
+                                   " are allowed; divide it into several zones"});
+  }
+}
+
 }  // namespace
 
 ZoneFile parse_zone_file(std::string_view text, double snap_m) {
@@ -77,6 +93,7 @@ ZoneFile parse_zone_file(std::string_view text, double snap_m) {
     find_portals(snap_m, plan);
   }
   sort_by_name(plan);
+  check_portal_counts(plan, findings);
   if (findings.faults.empty()) warn_of_unreachable(plan, drawing, findings);
   return result;
 }

@@ -7,6 +7,19 @@
 #include <utility>
 
 namespace zonepack::packer {
+namespace {
+
+constexpr std::size_t kNameInPair = 28;  // two of them, "-" and ".123456" are 64 bytes
+
+// At most kNameInPair bytes, without cutting a UTF-8 character in two.
+std::string shortened(const std::string& name) {
+  if (name.size() <= kNameInPair) return name;
+  std::size_t end = kNameInPair;
+  while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0u) == 0x80u) --end;
+  return name.substr(0, end);
+}
+
+}  // namespace
 
 bool share_a_height(const PlannedZone& a, const PlannedZone& b) noexcept {
   constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -14,7 +27,7 @@ bool share_a_height(const PlannedZone& a, const PlannedZone& b) noexcept {
          b.z_min_m.value_or(-kInf) < a.z_max_m.value_or(kInf);
 }
 
-void sort_by_name(ZonePlan& plan) {
+std::vector<std::uint32_t> sort_by_name(ZonePlan& plan) {
   std::vector<std::uint32_t> order(plan.zones.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -34,11 +47,16 @@ void sort_by_name(ZonePlan& plan) {
   }
   std::sort(plan.portals.begin(), plan.portals.end(),
             [](const PlannedPortal& a, const PlannedPortal& b) { return a.name < b.name; });
+  return place;
 }
 
-std::string portal_name(const std::string& zone_a, const std::string& zone_b, std::size_t number) {
-  std::string name = zone_a + "-" + zone_b;
-  if (number > 1) name += "." + std::to_string(number);
+std::string fresh_portal_name(const std::string& zone_a, const std::string& zone_b,
+                              std::set<std::string>& taken) {
+  const std::string pair = shortened(zone_a) + "-" + shortened(zone_b);
+  std::string name = pair;
+  for (std::size_t number = 2; !taken.insert(name).second; ++number) {
+    name = pair + "." + std::to_string(number);
+  }
   return name;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -39,10 +40,13 @@ struct ZonePlan {
 // Whether two zones can both hold a point of one height.
 bool share_a_height(const PlannedZone& a, const PlannedZone& b) noexcept;
 
-// Sorts zones and portals by name and lets the portals follow their zones.
-void sort_by_name(ZonePlan& plan);
+// Sorts zones and portals by name and lets the portals follow their zones. Returns, for each old
+// place of a zone, its new one.
+std::vector<std::uint32_t> sort_by_name(ZonePlan& plan);
 
-// "A-B" for the first portal between two zones, "A-B.2" for the second.
-std::string portal_name(const std::string& zone_a, const std::string& zone_b, std::size_t number);
+// "A-B", or "A-B.2" and so on when that is taken, for a portal that nobody named; long zone names
+// are shortened. The name is added to `taken`.
+std::string fresh_portal_name(const std::string& zone_a, const std::string& zone_b,
+                              std::set<std::string>& taken);
 
 }  // namespace zonepack::packer

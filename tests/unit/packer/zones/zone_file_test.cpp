@@ -366,6 +366,22 @@ TEST(ZoneFileFault, RefusesPortalsThatAreNotOneStraightLink) {
               ElementsAre(HasSubstr("expected true")));
 }
 
+TEST(ZoneFileFault, RefusesMoreVerticesAndPortalsThanTheFormatHolds) {
+  std::string comb = "[0,0]";  // 2049 teeth: 4099 vertices
+  for (int i = 2048; i >= 0; --i) {
+    comb += ",[" + std::to_string(i + 1) + ",1],[" + std::to_string(i) + ".5,2]";
+  }
+  EXPECT_THAT(faults_of({zone("A", "[" + comb + ",[0,0]]")}),
+              ElementsAre(HasSubstr("has 4099 vertices; at most 4096")));
+  std::vector<std::string> features{box("A", 0, 0, 300, 1), box("B", 0, 1, 300, 2)};
+  for (int i = 0; i < 257; ++i) {
+    const std::string x = std::to_string(i);
+    features.push_back(portal("P" + x, "A", "B", "[[" + x + ",1],[" + x + ".5,1]]"));
+  }
+  EXPECT_THAT(faults_of(features), ElementsAre(HasSubstr("zone 'A' has 257 portals, at most 256"),
+                                               HasSubstr("zone 'B' has 257 portals")));
+}
+
 TEST(ZoneFileFault, RefusesMultiPolygonsByName) {
   const std::string multi = R"({"type": "Feature", "properties": {"name": "M"}, "geometry":
       {"type": "MultiPolygon", "coordinates": [[[[0,0],[1,0],[1,1],[0,0]]]]}})";
