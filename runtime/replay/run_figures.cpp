@@ -41,6 +41,11 @@ ChartSeries compared(std::string name, std::vector<Sample> samples, Color color)
   return {.name = std::move(name), .samples = std::move(samples), .color = color, .compared = true};
 }
 
+// Where another's curves stand beside ours, ours need a name too.
+std::string ours(const char* what, const std::vector<BaselineRow>& baseline) {
+  return std::string(baseline.empty() ? "" : "Zonepack ") + what;
+}
+
 Chart chart_of(const RunTrace& trace) {
   Chart chart;
   chart.duration_s = trace.duration_s;
@@ -144,9 +149,9 @@ report::FloorPlan route_plan(const RunTrace& trace, const std::vector<Color>& co
 Chart loading_chart(const RunTrace& trace, const std::vector<BaselineRow>& baseline) {
   Chart chart = chart_of(trace);
   chart.series = {
-      {.name = "loaded",
+      {.name = ours("loaded", baseline),
        .samples = samples_of(trace, [](const TraceSample& s) { return s.signatures_loaded; })},
-      {.name = "unloaded",
+      {.name = ours("unloaded", baseline),
        .samples = samples_of(trace, [](const TraceSample& s) { return s.signatures_unloaded; }),
        .color = report::kOursToo}};
   if (!baseline.empty()) {
@@ -160,9 +165,9 @@ Chart loading_chart(const RunTrace& trace, const std::vector<BaselineRow>& basel
 
 Chart signatures_chart(const RunTrace& trace, const std::vector<BaselineRow>& baseline) {
   Chart chart = chart_of(trace);
-  chart.series = {{.name = "in memory", .samples = samples_of(trace, [](const TraceSample& s) {
-                                          return s.charged_signatures;
-                                        })}};
+  chart.series = {
+      {.name = ours("in memory", baseline),
+       .samples = samples_of(trace, [](const TraceSample& s) { return s.charged_signatures; })}};
   if (!baseline.empty()) {
     chart.series.push_back(compared("RTAB-Map in working memory",
                                     samples_of(baseline, &BaselineRow::in_memory), report::kOther));

@@ -166,4 +166,15 @@ Report make_run_report(const RunReportInput& input) {
   return page;
 }
 
+Report make_run_picture(const RunReportInput& input) {
+  const RunTrace& trace = input.trace;
+  report::Chart chart = loading_chart(trace, input.baseline);
+  chart.plot_height_px = 140;
+  Report page;
+  page.figures.push_back({"", "", report::draw_floor_plan(route_plan(trace, zone_colors(trace)))});
+  page.figures.push_back(
+      {"Signatures loaded and unloaded since the start", "", report::draw_chart(chart)});
+  return page;
+}
+
 }  // namespace zonepack

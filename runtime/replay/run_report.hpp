@@ -24,4 +24,7 @@ struct RunReportInput {
 
 report::Report make_run_report(const RunReportInput& input);
 
+// The same run in one small picture, for a page of one's own: the route and the loading curves.
+report::Report make_run_picture(const RunReportInput& input);
+
 }  // namespace zonepack

@@ -141,6 +141,7 @@ TEST(RunReport, PutsTheBaselineBesideOurs) {
   const std::vector<BaselineRow> rows = {{0, 184, 0, 1}, {30, 95, 981, 1071}};
   const std::string html = to_html(make_run_report({"map", "can0.log", s, trace, rows}));
   EXPECT_GE(count_of(html, ">RTAB-Map loaded</text>"), 1u);
+  EXPECT_EQ(count_of(html, ">Zonepack loaded</text>"), 1u);
   EXPECT_EQ(count_of(html, ">981, 1071<"), 1u);
   EXPECT_EQ(count_of(html, ">1071</text>"), 1u);
 }
@@ -168,6 +169,17 @@ TEST(RunReport, OfARunWithoutSamplesIsStillAPage) {
       make_run_report({"map", "can0.log", RunSummary{}, RunTrace{}, kNoBaseline});
   EXPECT_EQ(XmlCheck::fault_of(to_html(page)), "");
   EXPECT_EQ(to_html(page).find("nan"), std::string::npos);
+}
+
+TEST(RunReport, ThePictureIsTheRouteAndTheLoadingCurves) {
+  const RunSummary s = summary();
+  const RunTrace trace = three_rooms();
+  const report::Report page = make_run_picture({"map", "can0.log", s, trace, kNoBaseline});
+  const std::string svg = report::to_sheet(page).file_text();
+  EXPECT_EQ(XmlCheck::fault_of(svg), "");
+  EXPECT_EQ(page.figures.size(), 2u);
+  EXPECT_EQ(count_of(svg, ">portal</text>"), 1u);
+  EXPECT_EQ(count_of(svg, ">unloaded</text>"), 1u);
 }
 
 TEST(RunReport, TheSameRunGivesTheSameBytes) {
