@@ -118,7 +118,11 @@ void RtabmapDatabase::read(std::int32_t id, const PayloadSet& wanted, SignatureR
                                      [id](const Damage& d) { return d.signature == id; });
     throw DamagedSignature(path_.string(), *damage);
   }
-  reader_->read(id, wanted, into);
+  try {
+    reader_->read(id, wanted, into);
+  } catch (const SqliteCorrupt& error) {
+    throw DamagedSignature(path_.string(), {id, "database file", error.problem()});
+  }
   into.pose = node->pose;
 }
 

@@ -15,9 +15,8 @@ namespace zonepack::packer {
 // An RTAB-Map database, schema 0.11 to 0.23, read-only. One object serves one thread; another
 // thread takes its own with reopen(), which shares the outline and costs a file open.
 //
-// What it throws: SqliteError when the file as a whole, or the part just asked for, cannot be read;
-// DamagedSignature when one signature's values are not what they must be. After either, read() of
-// another signature works.
+// What it throws: DamagedSignature when a signature's values are not what they must be, or stand on
+// damaged pages of the file; read() of others goes on working. SqliteError for anything else.
 // Memory: the outline, one signature, and SQLite's page cache of 2 MiB.
 class RtabmapDatabase {
  public:

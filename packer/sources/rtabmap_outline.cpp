@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "packer/sources/cells.hpp"
@@ -35,19 +36,22 @@ void read_nodes(const SqliteFile& file, const RtabmapSchema& schema, MapOutline&
     NodeOutline node;
     node.id = node_id(file, row);
     const Place place{&file.name(), node.id, "Node"};
+    std::optional<Damage> damage;
     try {
       read_node(row, place, node);
     } catch (const DamagedSignature& error) {
-      add_damage(outline, node, error.damage());
+      damage = error.damage();
     }
     if (node.weight == kDeletedWeight) {
       ++outline.deleted_nodes;
-    } else if (!outline.nodes.empty() && outline.nodes.back().id == node.id) {
-      add_damage(outline, outline.nodes.back(),
-                 {node.id, "Node.id", "expected one row, found two"});
+      continue;
+    }
+    if (!outline.nodes.empty() && outline.nodes.back().id == node.id) {
+      damage = Damage{node.id, "Node.id", "expected one row, found two"};
     } else {
       outline.nodes.push_back(std::move(node));
     }
+    if (damage) add_damage(outline, outline.nodes.back(), *damage);
   }
 }
 
@@ -184,6 +188,16 @@ void read_totals(const SqliteFile& file, const RtabmapSchema& schema, MapOutline
   }
 }
 
+// For what the map can do without: a part that cannot be read is told, not fatal.
+template <typename Read>
+void read_if_possible(MapOutline& outline, Read read) {
+  try {
+    read();
+  } catch (const std::runtime_error& error) {
+    outline.warnings.emplace_back(error.what());
+  }
+}
+
 }  // namespace
 
 std::string node_columns(const RtabmapSchema& schema) {
@@ -206,9 +220,9 @@ MapOutline read_outline(const SqliteFile& file, const RtabmapSchema& schema) {
   read_nodes(file, schema, outline);
   read_optimised_poses(file, schema, outline);
   count_unlinked(outline);
-  read_optimised_map(file, schema, outline);
-  read_parameters(file, schema, outline);
-  read_totals(file, schema, outline);
+  read_if_possible(outline, [&] { read_optimised_map(file, schema, outline); });
+  read_if_possible(outline, [&] { read_parameters(file, schema, outline); });
+  read_if_possible(outline, [&] { read_totals(file, schema, outline); });
   return outline;
 }
 

@@ -14,7 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kDatabaseMagic("SQLite format 3\0", 16);
-constexpr std::string_view kJournalMagic("\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", 8);
 
 std::string first_bytes(const fs::path& path, std::size_t count) {
   std::string bytes(count, '\0');
@@ -62,7 +61,9 @@ void refuse_if_not_closed(const fs::path& path, const std::string& name) {
                       "' 'PRAGMA wal_checkpoint(TRUNCATE)'");
   }
   const fs::path journal = beside(path, "-journal");
-  if (first_bytes(journal, kJournalMagic.size()) == kJournalMagic) {
+  // SQLite's own rule: a journal whose first byte is not zero has not been finished.
+  const std::string first = first_bytes(journal, 1);
+  if (!first.empty() && first[0] != '\0') {
     throw SqliteError(name + ": a write to it was interrupted (" + journal.string() +
                       "); close RTAB-Map, or let SQLite restore it: sqlite3 '" + name +
                       "' 'PRAGMA schema_version'");
@@ -135,16 +136,16 @@ std::string_view SqliteQuery::text(int column) const {
 }
 
 void SqliteQuery::fail() const {
-  const int code = sqlite3_extended_errcode(file_->handle());
-  const std::string what = file_->name() + ": ";
-  const int primary = code & 0xff;
-  if (primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB || primary == SQLITE_IOERR) {
-    throw SqliteError(what + "a part of the file cannot be read (" +
-                      sqlite3_errmsg(file_->handle()) +
-                      "); copy it again from where it was recorded, or salvage it with: sqlite3 '" +
-                      file_->name() + "' .recover | sqlite3 NEW.db");
+  const int code = sqlite3_errcode(file_->handle());
+  const std::string reason = sqlite3_errmsg(file_->handle());
+  if (code != SQLITE_CORRUPT && code != SQLITE_NOTADB) {
+    throw SqliteError(file_->name() + ": " + reason);
   }
-  throw SqliteError(what + sqlite3_errmsg(file_->handle()));
+  throw SqliteCorrupt(file_->name(), "expected whole database pages, found damaged ones (" +
+                                         reason +
+                                         "); copy the file again, or salvage it with: "
+                                         "sqlite3 '" +
+                                         file_->name() + "' .recover | sqlite3 NEW.db");
 }
 
 }  // namespace zonepack::packer

@@ -22,6 +22,17 @@ class SqliteError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Some pages of the file are not what SQLite wrote. problem() is the message without the file.
+class SqliteCorrupt : public SqliteError {
+ public:
+  SqliteCorrupt(const std::string& file, const std::string& problem)
+      : SqliteError(file + ": " + problem), problem_(problem) {}
+  const std::string& problem() const noexcept { return problem_; }
+
+ private:
+  std::string problem_;
+};
+
 // A SQLite database opened read-only and immutable: not one byte, lock, journal or timestamp of it
 // changes. One object serves one thread; another thread opens its own.
 class SqliteFile {

@@ -80,9 +80,11 @@ void MatrixUnpacker::unpack(std::span<const std::byte> blob, const Place& place,
   if (code == Z_MEM_ERROR) throw std::bad_alloc();
   if (code == Z_STREAM_END && stream_.avail_out == 0 && stream_.avail_in == 0) return;
   if (code == Z_STREAM_END) {
+    const std::string after =
+        stream_.avail_in == 0 ? "" : " and " + std::to_string(stream_.avail_in) + " bytes after it";
     place.damaged("expected " + describe(out) + " (" + std::to_string(bytes) +
                   " bytes), found a zlib stream of " + std::to_string(stream_.total_out) +
-                  " bytes and " + std::to_string(stream_.avail_in) + " bytes after it");
+                  " bytes" + after);
   }
   if (stream_.avail_out == 0 && code != Z_DATA_ERROR) {
     place.damaged("expected " + describe(out) + " (" + std::to_string(bytes) +
