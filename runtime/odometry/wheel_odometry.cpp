@@ -144,16 +144,15 @@ Covariance2 WheelOdometry::noise_of(const Step& step) const noexcept {
   return noise;
 }
 
-OdometryIncrement WheelOdometry::accept(const Sample& from, const Sample& to,
-                                        const Step& step) noexcept {
+OdometryIncrement WheelOdometry::accept(const Sample& to, const Step& step) noexcept {
+  OdometryIncrement increment;
+  increment.from_ns = last_->stamp_ns;
+  increment.to_ns = to.stamp_ns;
   const bool gap = step.seconds > settings_.gap_s;
   if (gap) ++counters_.gaps;
   last_ = to;
   last_step_ = gap ? std::nullopt : std::optional<Step>(step);
   suspect_.reset();
-  OdometryIncrement increment;
-  increment.from_ns = from.stamp_ns;
-  increment.to_ns = to.stamp_ns;
   increment.motion = {along_arc(step.distance_m, step.turn_rad), noise_of(step)};
   increment.speed_m_s = step.distance_m / step.seconds;
   increment.yaw_rate_rad_s = step.turn_rad / step.seconds;
@@ -171,7 +170,7 @@ OdometryIncrement WheelOdometry::rebase(const Sample& to, const Step& step) noex
     bridged.distance_m += last_step_->distance_m / last_step_->seconds * apart_s;
     bridged.turn_rad += last_step_->turn_rad / last_step_->seconds * apart_s;
   }
-  OdometryIncrement increment = accept(*last_, to, bridged);
+  OdometryIncrement increment = accept(to, bridged);
   last_step_ = step;
   increment.speed_m_s = step.distance_m / step.seconds;
   increment.yaw_rate_rad_s = step.turn_rad / step.seconds;
@@ -193,7 +192,7 @@ std::optional<OdometryIncrement> WheelOdometry::take(const CanFrame& frame) noex
   const Step step = step_between(*last_, *sample);
   if (plausible(step)) {
     if (!last_step_ || step.seconds > settings_.gap_s || !too_abrupt(*last_step_, step)) {
-      return accept(Sample(*last_), *sample, step);
+      return accept(*sample, step);
     }
   }
   if (suspect_) {
@@ -202,7 +201,7 @@ std::optional<OdometryIncrement> WheelOdometry::take(const CanFrame& frame) noex
       const Step to_suspect = step_between(*last_, *suspect_);
       const bool moved =
           plausible(step) && plausible(to_suspect) && !too_abrupt(to_suspect, onward);
-      return moved ? accept(Sample(*last_), *sample, step) : rebase(*sample, onward);
+      return moved ? accept(*sample, step) : rebase(*sample, onward);
     }
   }
   ++counters_.rejected;

@@ -108,7 +108,7 @@ class WheelOdometry {
                      const SignalReading& to) const noexcept;
   bool plausible(const Step& step) const noexcept;
   bool too_abrupt(const Step& before, const Step& step) const noexcept;
-  OdometryIncrement accept(const Sample& from, const Sample& to, const Step& step) noexcept;
+  OdometryIncrement accept(const Sample& to, const Step& step) noexcept;
   OdometryIncrement rebase(const Sample& to, const Step& step) noexcept;
   Covariance2 noise_of(const Step& step) const noexcept;
 
