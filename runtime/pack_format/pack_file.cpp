@@ -108,15 +108,20 @@ Result<ByteSpan> decode_chunk(const fb::ChunkEntry& entry, ByteSpan stored,
   return chunk;
 }
 
-Placement::Place Placement::add(std::uint32_t decoded_size) noexcept {
+std::uint64_t Placement::room() const noexcept {
   const std::uint64_t at = (end_ + kChunkAlignment - 1) / kChunkAlignment * kChunkAlignment;
-  if (slots_ == 0 || at > kSlotBytes || decoded_size > kSlotBytes - at ||
-      chunks_ == kMaxChunksPerSlot) {
+  if (slots_ == 0 || chunks_ == kMaxChunksPerSlot || at >= kSlotBytes) return 0;
+  return kSlotBytes - at;
+}
+
+Placement::Place Placement::add(std::uint32_t decoded_size) noexcept {
+  if (decoded_size > room()) {
     ++slots_;
     chunks_ = 1;
     end_ = decoded_size;
     return {slots_ - 1, 0};
   }
+  const std::uint64_t at = (end_ + kChunkAlignment - 1) / kChunkAlignment * kChunkAlignment;
   ++chunks_;
   end_ = at + decoded_size;
   return {slots_ - 1, static_cast<std::uint32_t>(at)};

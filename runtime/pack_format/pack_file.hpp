@@ -67,6 +67,8 @@ class Placement {
     std::uint32_t offset;  // bytes into the slot
   };
   Place add(std::uint32_t decoded_size) noexcept;
+  // The longest chunk that still fits the last slot; 0 before the first and when it is full.
+  std::uint64_t room() const noexcept;
   std::uint32_t slots() const noexcept { return slots_; }
 
  private:

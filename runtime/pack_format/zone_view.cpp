@@ -51,7 +51,7 @@ Result<ZoneView> ZoneView::make(std::span<const ChunkRef> chunks) {
       if (view.core_.empty() || ordinal + 1 != view.core_.size()) {
         return {ErrorCode::kMismatch, ordinal};
       }
-      view.core_.back().more_links.push_back(core.signature);
+      view.core_.back().more_links.push_back({core.chunk, core.signature});
       continue;
     }
     if (ordinal != view.core_.size() ||

@@ -42,10 +42,15 @@ class ZoneView {
 
   std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(core_.size()); }
 
+  // An entry of a core chunk; its indices refer to that chunk's lists.
+  struct More {
+    const fb::CoreChunk* chunk;
+    const fb::Signature* signature;
+  };
   struct Core {
     const fb::CoreChunk* chunk;
     const fb::Signature* signature;
-    std::vector<const fb::Signature*> more_links;  // entries that continue it
+    std::vector<More> more_links;  // entries that continue it
   };
   const Core& core(std::uint32_t ordinal) const noexcept { return core_[ordinal]; }
 

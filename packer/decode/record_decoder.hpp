@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "packer/record.hpp"
+#include "runtime/pack_format/zone_view.hpp"
+
+namespace zonepack::packer {
+
+// A signature as it was before it was packed, bit for bit, as far as the view's chunks hold it:
+// payload kinds that were not decoded or packed are empty. Throws std::runtime_error naming the
+// signature when tables contradict each other (a damaged pack whose checksums hold).
+SignatureRecord decode_record(const ZoneView& zone, std::uint32_t ordinal);
+
+}  // namespace zonepack::packer

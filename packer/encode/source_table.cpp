@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/encode/source_table.hpp"
+
+#include <cstring>
+#include <utility>
+
+namespace zonepack::packer {
+namespace {
+
+constexpr std::int32_t kFloat = 5;  // OpenCV depth
+constexpr std::uint32_t kMaxChannels = 10;
+
+// A column's rows as separate channels, when that is smaller than the rows as they are.
+std::optional<std::vector<EncodedColumn>> by_channel(std::span<const std::byte> rows,
+                                                     std::uint32_t row_bytes) {
+  const std::uint32_t channels = row_bytes / 4;
+  const std::size_t count = rows.size() / row_bytes;
+  std::vector<EncodedColumn> columns;
+  std::vector<std::uint32_t> values(count);
+  std::size_t size = 0;
+  for (std::uint32_t c = 0; c < channels; ++c) {
+    for (std::size_t i = 0; i < count; ++i) {
+      std::memcpy(&values[i], rows.data() + i * row_bytes + c * 4, 4);
+    }
+    const auto field = static_cast<fb::Field>(static_cast<std::uint16_t>(fb::Field::Channel0) + c);
+    columns.push_back(encode_values(field, values));
+    size += columns.back().bytes.size() + sizeof(fb::Column);
+  }
+  if (size >= rows.size()) return std::nullopt;
+  return columns;
+}
+
+EncodedColumn shape_of(const Matrix& matrix) {
+  return encode_constant(fb::Field::Shape,
+                         static_cast<std::uint32_t>(matrix.rows) |
+                             std::uint64_t{static_cast<std::uint32_t>(matrix.type)} << 32);
+}
+
+std::uint32_t channels_of(const Matrix& matrix) {
+  return static_cast<std::uint32_t>(matrix.type >> 3) + 1;
+}
+
+SourceTable bytes_table(std::uint32_t signature, fb::Part part, Bytes bytes) {
+  SourceTable table{signature, part, 0, static_cast<std::uint32_t>(bytes.size()), {}, {}, 0, {}};
+  table.columns.push_back({fb::Field::Row, 1, false, std::move(bytes)});
+  return table;
+}
+
+// A matrix of float32 rows keeps its points together; any other is a string of bytes.
+SourceTable matrix_table(std::uint32_t signature, fb::Part part, Matrix matrix, bool points) {
+  const EncodedColumn shape = shape_of(matrix);
+  const std::uint32_t row_bytes = channels_of(matrix) * 4;
+  SourceTable table = bytes_table(signature, part, std::move(matrix.data));
+  table.attributes.push_back(shape);
+  if (points && (matrix.type & 7) == kFloat && row_bytes <= kMaxChannels * 4) {
+    table.columns[0].row_bytes = row_bytes;
+    table.rows /= row_bytes;
+  }
+  return table;
+}
+
+template <typename T>
+SourceColumn values_column(fb::Field field, const std::vector<T>& values) {
+  static_assert(sizeof(T) == 4);
+  SourceColumn column{field, 4, true, Bytes(values.size() * 4)};
+  if (!values.empty()) std::memcpy(column.data.data(), values.data(), column.data.size());
+  return column;
+}
+
+template <typename T>
+void append(Bytes& out, const T& value) {
+  const auto bytes = std::as_bytes(std::span(&value, 1));
+  out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
+SourceTable features_table(std::uint32_t signature, Features& features) {
+  SourceTable table{
+      signature, fb::Part::Features, 0, static_cast<std::uint32_t>(features.count), {}, {}, 0, {}};
+  const bool is_float = features.descriptor_type == Features::DescriptorType::kF32;
+  table.attributes.push_back(encode_constant(
+      fb::Field::Info,
+      features.descriptor_dim | static_cast<std::uint64_t>(features.descriptor_type) << 32));
+  table.columns.push_back(values_column(fb::Field::X, features.x));
+  table.columns.push_back(values_column(fb::Field::Y, features.y));
+  table.columns.push_back(values_column(fb::Field::Size, features.size));
+  table.columns.push_back(values_column(fb::Field::Angle, features.angle));
+  table.columns.push_back(values_column(fb::Field::Response, features.response));
+  table.columns.push_back(values_column(fb::Field::Octave, features.octave));
+  table.columns.push_back(values_column(fb::Field::WordId, features.word_id));
+  table.columns.push_back(values_column(fb::Field::PointX, features.point_x));
+  table.columns.push_back(values_column(fb::Field::PointY, features.point_y));
+  table.columns.push_back(values_column(fb::Field::PointZ, features.point_z));
+  if (features.descriptor_dim > 0) {
+    table.columns.push_back({fb::Field::Descriptor, features.descriptor_dim * (is_float ? 4 : 1),
+                             false, std::move(features.descriptors)});
+  }
+  return table;
+}
+
+SourceTable scan_table(std::uint32_t signature, Scan scan) {
+  Bytes info;
+  append(info, scan.format);
+  for (const float v : {scan.range_min, scan.range_max, scan.angle_min, scan.angle_max,
+                        scan.angle_increment, scan.max_points}) {
+    append(info, v);
+  }
+  for (const float v : scan.local_transform) append(info, v);
+  SourceTable table = matrix_table(signature, fb::Part::Scan, std::move(scan.data), true);
+  const auto size = static_cast<std::uint32_t>(info.size());
+  table.attributes.push_back(encode_raw(fb::Field::Info, info, size));
+  return table;
+}
+
+}  // namespace
+
+std::vector<EncodedColumn> SourceTable::encode(std::uint32_t first, std::uint32_t count,
+                                               LatticeEncoder& lattice) const {
+  std::vector<EncodedColumn> out;
+  if (first == 0) out = attributes;
+  for (const SourceColumn& column : columns) {
+    const auto rows_bytes =
+        std::span<const std::byte>(column.data)
+            .subspan(std::size_t{first} * column.row_bytes, std::size_t{count} * column.row_bytes);
+    if (column.values) {
+      std::vector<std::uint32_t> values(count);
+      if (count > 0) std::memcpy(values.data(), rows_bytes.data(), rows_bytes.size());
+      out.push_back(encode_values(column.field, values));
+      continue;
+    }
+    if (scan_indices && count > 0) {
+      const EncodedColumn subset =
+          encode_subset(column.field, std::span(*scan_indices).subspan(first, count));
+      if (subset.bytes.size() < rows_bytes.size()) {
+        out.push_back(subset);
+        continue;
+      }
+    }
+    if (cell_size > 0 && column.row_bytes == 8) {
+      if (auto cells = lattice.encode(rows_bytes, cell_size)) {
+        out.push_back(std::move(*cells));
+        continue;
+      }
+    }
+    const bool points = column.field == fb::Field::Row && column.row_bytes >= 8;
+    if (points && count > 0) {
+      if (auto channels = by_channel(rows_bytes, column.row_bytes)) {
+        for (EncodedColumn& channel : *channels) out.push_back(std::move(channel));
+        continue;
+      }
+    }
+    out.push_back(encode_raw(column.field, rows_bytes, column.row_bytes));
+  }
+  return out;
+}
+
+std::vector<SourceTable> tables_of(SignatureRecord& record, std::uint32_t ordinal) {
+  std::vector<SourceTable> tables;
+  if (record.features.count > 0) tables.push_back(features_table(ordinal, record.features));
+  for (std::size_t i = 0; i < record.global_descriptors.size(); ++i) {
+    GlobalDescriptor& descriptor = record.global_descriptors[i];
+    Bytes info;
+    append(info, descriptor.type);
+    append(info, std::int32_t{descriptor.info.has_value()});
+    if (descriptor.info) {
+      append(info, descriptor.info->rows);
+      append(info, descriptor.info->cols);
+      append(info, descriptor.info->type);
+      info.insert(info.end(), descriptor.info->data.begin(), descriptor.info->data.end());
+    }
+    tables.push_back(
+        matrix_table(ordinal, fb::Part::GlobalDescriptor, std::move(descriptor.data), false));
+    tables.back().ordinal = static_cast<std::uint16_t>(i);
+    const auto size = static_cast<std::uint32_t>(info.size());
+    tables.back().attributes.push_back(encode_raw(fb::Field::Info, info, size));
+  }
+  if (record.grid) {
+    const Grid& grid = *record.grid;
+    SourceTable info{ordinal, fb::Part::GridInfo, 0, 0, {}, {}, 0, {}};
+    Bytes values;
+    append(values, grid.cell_size);
+    for (const float v : grid.view_point) append(values, v);
+    info.attributes.push_back(encode_raw(fb::Field::Info, values, 16));
+    tables.push_back(std::move(info));
+    const std::pair<fb::Part, std::optional<Matrix>*> parts[] = {
+        {fb::Part::GroundCells, &record.grid->ground},
+        {fb::Part::ObstacleCells, &record.grid->obstacle},
+        {fb::Part::EmptyCells, &record.grid->empty}};
+    for (const auto& [part, matrix] : parts) {
+      if (!matrix->has_value()) continue;
+      const std::int32_t type = (*matrix)->type;
+      tables.push_back(matrix_table(ordinal, part, std::move(**matrix), true));
+      SourceTable& table = tables.back();
+      table.cell_size = grid.cell_size;
+      const std::uint32_t row_bytes = table.columns[0].row_bytes;
+      if (row_bytes >= 8 && record.scan && record.scan->data.type == type) {
+        table.scan_indices = subset_of(table.columns[0].data, record.scan->data.data, row_bytes);
+      }
+    }
+  }
+  if (record.scan) tables.push_back(scan_table(ordinal, std::move(*record.scan)));
+  const auto add_bytes = [&](fb::Part part, Bytes& bytes) {
+    if (!bytes.empty()) tables.push_back(bytes_table(ordinal, part, std::move(bytes)));
+  };
+  add_bytes(fb::Part::Image, record.image);
+  add_bytes(fb::Part::Depth, record.depth);
+  add_bytes(fb::Part::DepthConfidence, record.depth_confidence);
+  if (record.user_data) {
+    tables.push_back(
+        matrix_table(ordinal, fb::Part::UserData, std::move(*record.user_data), false));
+  }
+  for (std::size_t i = 0; i < record.links.size(); ++i) {
+    if (!record.links[i].user_data) continue;
+    tables.push_back(matrix_table(ordinal, fb::Part::LinkUserData,
+                                  std::move(*record.links[i].user_data), false));
+    tables.back().ordinal = static_cast<std::uint16_t>(i);
+  }
+  return tables;
+}
+
+}  // namespace zonepack::packer

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "packer/encode/column_encoder.hpp"
+#include "packer/record.hpp"
+#include "runtime/pack_format/bulk_chunk_generated.h"
+
+namespace zonepack::packer {
+
+// Rows of equal length that a table's column holds before encoding.
+struct SourceColumn {
+  fb::Field field{};
+  std::uint32_t row_bytes = 0;
+  bool values = false;  // 32-bit values, to be kept in their smallest form; else rows of bytes
+  Bytes data;
+};
+
+// One table of one signature on its way into chunks, whole or in pieces of rows.
+struct SourceTable {
+  std::uint32_t signature = 0;  // ordinal in the zone
+  fb::Part part{};
+  std::uint16_t ordinal = 0;
+  std::uint32_t rows = 0;
+  std::vector<EncodedColumn> attributes;  // Shape, Info
+  std::vector<SourceColumn> columns;
+  float cell_size = 0;                                     // cells of a grid; else 0
+  std::optional<std::vector<std::uint32_t>> scan_indices;  // cells that are points of the scan
+
+  // Rows [first, first + count) in their smallest form; with the attributes when first is 0.
+  std::vector<EncodedColumn> encode(std::uint32_t first, std::uint32_t count,
+                                    LatticeEncoder& lattice) const;
+};
+
+// All tables of a signature. `record` gives up its large members.
+std::vector<SourceTable> tables_of(SignatureRecord& record, std::uint32_t ordinal);
+
+}  // namespace zonepack::packer
