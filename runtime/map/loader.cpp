@@ -1,43 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/map/loader.hpp"
 
-#include <array>
-
 namespace zonepack {
 
-Result<PackReader> PackReader::open(const Catalog& catalog, ZoneId zone) {
+Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone) {
   const CatalogZone& wanted = catalog.zones[zone];
-  Result<StorageFile> file = StorageFile::open(catalog.folder + "/" + wanted.pack);
-  if (!file) return file.error();
-  if (file->size() < sizeof(PackHeader) + sizeof(PackTail)) {
-    return {ErrorCode::kTruncated, static_cast<std::int64_t>(file->size())};
-  }
-  std::array<std::byte, sizeof(PackTail)> last;
-  if (const auto read = file->read_at(file->size() - last.size(), last); !read) return read.error();
-  const Result<PackTail> tail = check_tail(last, file->size());
-  if (!tail) return tail.error();
-  if (tail->digest != wanted.pack_digest) return ErrorCode::kMismatch;
-  std::array<std::byte, sizeof(PackHeader)> header;
-  if (const auto read = file->read_at(0, header); !read) return read.error();
-
-  PackReader reader(std::move(*file), std::vector<std::uint64_t>((tail->index_size + 7) / 8));
-  const auto index = std::as_writable_bytes(std::span(reader.words_)).first(tail->index_size);
-  if (const auto read = reader.file_.read_at(tail->index_offset, index); !read) return read.error();
-  const Result<const fb::PackIndex*> checked = check_index(header, index, *tail);
-  if (!checked) return checked.error();
-  reader.index_ = *checked;
-  if (reader.index_->zone()->str() != wanted.name ||
-      reader.index_->signatures() != wanted.signatures ||
-      slots_needed(*reader.index_, catalog.payload) != wanted.slots) {
+  Result<PackReader> pack =
+      PackReader::open(catalog.folder + "/" + wanted.pack, &wanted.pack_digest);
+  if (!pack) return pack.error();
+  const fb::PackIndex& index = pack->index();
+  if (index.zone()->str() != wanted.name || index.signatures() != wanted.signatures ||
+      slots_needed(index, catalog.payload) != wanted.slots) {
     return ErrorCode::kMismatch;
   }
-  return reader;
+  return pack;
 }
 
 Result<ZoneLoad> ZoneLoad::begin(const Catalog& catalog, ZoneId zone,
                                  std::span<std::byte* const> slots,
                                  std::span<std::byte> read_buffer) {
-  Result<PackReader> pack = PackReader::open(catalog, zone);
+  Result<PackReader> pack = open_pack(catalog, zone);
   if (!pack) return pack.error();
   if (slots.size() < catalog.zones[zone].slots) {
     return {ErrorCode::kNoRoom, catalog.zones[zone].slots};

@@ -3,37 +3,18 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "platform/base/result.hpp"
-#include "platform/storage.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/pack_format/pack_file.hpp"
-#include "runtime/pack_format/zone_view.hpp"
+#include "runtime/pack_format/pack_reader.hpp"
 
 namespace zonepack {
 
-// The index of one pack, read and checked against the digest that the manifest gives.
-class PackReader {
- public:
-  // Opens FOLDER/zone.pack. kMismatch when it is a whole pack, but not the one the manifest names,
-  // or holds another zone or number of signatures or slots.
-  static Result<PackReader> open(const Catalog& catalog, ZoneId zone);
-
-  const fb::PackIndex& index() const noexcept { return *index_; }
-  const StorageFile& file() const noexcept { return file_; }
-
- private:
-  PackReader(StorageFile file, std::vector<std::uint64_t> words) noexcept
-      : file_(std::move(file)), words_(std::move(words)) {}
-  StorageFile file_;
-  std::vector<std::uint64_t> words_;  // the index, aligned
-  const fb::PackIndex* index_ = nullptr;
-};
+// Opens the pack of a zone. kMismatch when it is a whole pack, but not the one that the manifest
+// names, or holds another zone or number of signatures or slots.
+Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone);
 
 // Loads one zone, chunk by chunk, from its pack into slots: read into a private buffer, check,
 // decode into place. Between two step() calls the load can be given up.

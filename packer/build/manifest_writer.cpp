@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/build/manifest_writer.hpp"
+
+#include <lz4.h>
+
+#include <cstring>
+#include <stdexcept>
+
+#include "platform/base/require.hpp"
+
+namespace zonepack::packer {
+namespace {
+
+void check_limits(const ZonePlan& plan) {
+  const auto refuse = [](const std::string& what, std::size_t count, std::size_t limit) {
+    throw std::runtime_error(what + ": " + std::to_string(count) + ", the format holds at most " +
+                             std::to_string(limit));
+  };
+  if (plan.zones.size() > kMaxZones) refuse("zones", plan.zones.size(), kMaxZones);
+  if (plan.portals.size() > kMaxPortals) refuse("portals", plan.portals.size(), kMaxPortals);
+  std::vector<std::size_t> portals(plan.zones.size());
+  for (const PlannedPortal& portal : plan.portals) {
+    ++portals[portal.zone_a];
+    ++portals[portal.zone_b];
+  }
+  for (std::size_t i = 0; i < plan.zones.size(); ++i) {
+    const PlannedZone& zone = plan.zones[i];
+    std::size_t vertices = zone.polygon.outer.size();
+    for (const Ring& hole : zone.polygon.holes) vertices += hole.size();
+    if (vertices > kMaxVerticesPerZone) {
+      refuse("zone " + zone.name + ": vertices", vertices, kMaxVerticesPerZone);
+    }
+    if (portals[i] > kMaxPortalsPerZone) {
+      refuse("zone " + zone.name + ": portals", portals[i], kMaxPortalsPerZone);
+    }
+  }
+}
+
+using Builder = flatbuffers::FlatBufferBuilder;
+
+flatbuffers::Offset<flatbuffers::String> text(Builder& builder, const std::string& value) {
+  return value.empty() ? 0 : builder.CreateString(value);
+}
+
+flatbuffers::Offset<fb::Ring> ring(Builder& builder, const Ring& points) {
+  std::vector<fb::Point> out;
+  out.reserve(points.size());
+  for (const Point2& p : points) out.emplace_back(p.x_m, p.y_m);
+  return fb::CreateRing(builder, builder.CreateVectorOfStructs(out));
+}
+
+template <std::size_t N>
+flatbuffers::Offset<flatbuffers::Vector<std::uint8_t>> digest(
+    Builder& builder, const std::array<std::uint8_t, N>& bytes) {
+  return builder.CreateVector(bytes.data(), bytes.size());
+}
+
+flatbuffers::Offset<fb::Zone> zone_table(Builder& builder, const PlannedZone& zone,
+                                         const PackSummary& pack,
+                                         const std::vector<fb::Node>& nodes) {
+  std::vector<flatbuffers::Offset<fb::Ring>> holes;
+  for (const Ring& hole : zone.polygon.holes) holes.push_back(ring(builder, hole));
+  std::vector<fb::PayloadBytes> payloads;
+  for (std::size_t k = 0; k < pack.payloads.size(); ++k) {
+    const PackSummary::Payload& payload = pack.payloads[k];
+    if (payload.chunks == 0) continue;
+    payloads.emplace_back(payload.decoded, payload.stored, payload.chunks,
+                          static_cast<std::uint8_t>(k));
+  }
+  const auto name = builder.CreateString(zone.name);
+  const auto zone_type = text(builder, zone.zone_type);
+  const auto label = text(builder, zone.label);
+  const auto parent = text(builder, zone.parent);
+  const auto outer = ring(builder, zone.polygon.outer);
+  const auto hole_vector = holes.empty() ? 0 : builder.CreateVector(holes);
+  const auto file = builder.CreateString(pack.file);
+  const auto pack_digest = digest(builder, pack.digest);
+  const auto payload_vector = builder.CreateVectorOfStructs(payloads);
+  const auto slots = builder.CreateVector(pack.slots);
+  const auto node_vector = builder.CreateVectorOfStructs(nodes);
+  return fb::CreateZone(builder, name, zone_type, label, parent, outer, hole_vector,
+                        pack.signatures, pack.features, file, pack.bytes, pack_digest,
+                        pack.grid_needs_scan, payload_vector, slots, node_vector);
+}
+
+}  // namespace
+
+Bytes manifest_bytes(const ManifestContent& content) {
+  const ZonePlan& plan = *content.plan;
+  check_limits(plan);
+  Builder builder(1 << 16);
+  std::vector<flatbuffers::Offset<fb::Zone>> zones;
+  for (std::size_t i = 0; i < plan.zones.size(); ++i) {
+    zones.push_back(zone_table(builder, plan.zones[i], (*content.packs)[i], content.nodes[i]));
+  }
+  std::vector<flatbuffers::Offset<fb::Portal>> portals;
+  for (const PlannedPortal& portal : plan.portals) {
+    const fb::Point p(portal.segment.p.x_m, portal.segment.p.y_m);
+    const fb::Point q(portal.segment.q.x_m, portal.segment.q.y_m);
+    portals.push_back(fb::CreatePortal(builder, text(builder, portal.name), portal.zone_a,
+                                       portal.zone_b, &p, &q));
+  }
+  const auto provenance = fb::CreateProvenance(
+      builder, text(builder, content.source_kind), text(builder, content.source_version),
+      builder.CreateString(ZONEPACK_VERSION), static_cast<std::uint32_t>(LZ4_versionNumber()),
+      text(builder, content.options), content.source_feature_count, content.source_bytes,
+      text(builder, content.detector));
+  const auto lineage = digest(builder, content.lineage);
+  const auto frame = builder.CreateString("map");
+  const auto zone_vector = builder.CreateVector(zones);
+  const auto portal_vector = builder.CreateVector(portals);
+  const auto edges = builder.CreateVectorOfStructs(content.edges);
+  fb::FinishManifestBuffer(
+      builder, fb::CreateManifest(builder, lineage, frame, static_cast<std::uint32_t>(kSlotBytes),
+                                  content.payload, zone_vector, portal_vector, edges, provenance));
+  if (builder.GetSize() > kMaxManifestBytes) {
+    throw std::runtime_error("the manifest would take " + std::to_string(builder.GetSize()) +
+                             " bytes, the format holds at most " +
+                             std::to_string(kMaxManifestBytes));
+  }
+  ManifestHeader header;
+  header.size = builder.GetSize();
+  Bytes file(sizeof header + header.size + sizeof(ManifestTail));
+  std::memcpy(file.data(), &header, sizeof header);
+  std::memcpy(file.data() + sizeof header, builder.GetBufferPointer(), header.size);
+  ManifestTail tail;
+  tail.digest = blake2b_32({ByteSpan(file).first(sizeof header + header.size)});
+  std::memcpy(file.data() + file.size() - sizeof tail, &tail, sizeof tail);
+  ZP_REQUIRE(check_manifest(file).ok());
+  return file;
+}
+
+}  // namespace zonepack::packer

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "packer/build/progress.hpp"
+#include "packer/encode/pack_writer.hpp"
+#include "packer/sources/damage.hpp"
+#include "packer/zones/partition.hpp"
+#include "packer/zones/zone_file.hpp"
+#include "runtime/pack_format/accounting.hpp"
+
+// From a database and a zone file to a map: a folder with one pack per zone and a manifest.
+namespace zonepack::packer {
+
+enum class UnlinkedPolicy : std::uint8_t { kOdometry, kDrop, kError };
+enum class DamagedPolicy : std::uint8_t { kSkip, kError };
+
+struct BuildOptions {
+  std::filesystem::path database;
+  std::filesystem::path zones;
+  std::filesystem::path out;
+  PayloadMask payload = kEveryPayload;
+  ByteCount max_zone_bytes = 0;  // charged for the default payload; 0: no limit
+  OrphanPolicy orphans = OrphanPolicy::kNearest;
+  double snap_m = kDefaultSnap_m;
+  UnlinkedPolicy unlinked = UnlinkedPolicy::kOdometry;
+  DamagedPolicy damaged = DamagedPolicy::kError;
+  unsigned jobs = 0;  // 0: one for each core
+};
+
+struct BuildSummary {
+  std::string schema_version;
+  std::size_t signatures = 0;  // packed
+  std::uint64_t features = 0;
+  std::size_t deleted = 0;  // weight -9
+  std::map<std::int32_t, std::size_t> unlinked_by_session;
+  std::size_t unlinked_dropped = 0;
+  std::vector<Orphan> orphans;
+  std::size_t orphans_dropped = 0;
+  std::vector<Damage> damages;        // of signatures skipped
+  std::vector<std::string> warnings;  // complete sentences
+  std::vector<std::string> zone_names;
+  std::vector<PackSummary> packs;   // by zone
+  ByteCount charged_bytes = 0;      // all zones, default payload: slots x slot size
+  ByteCount stored_bytes = 0;       // features, scans, grids and core, as stored in packs
+  ByteCount pack_bytes = 0;         // of all pack files
+  ByteCount feature_row_bytes = 0;  // 72 bytes for each feature of the source
+  ByteCount source_bytes = 0;       // feature rows and the zlib blobs of scans and grids
+  SmallestBudget smallest;
+  bool unchanged = false;  // the manifest that stood there was the same
+};
+
+// Builds the map. The manifest's rename is the commit: until then, and after any failure, the map
+// that stood in `out` is as it was. Same input and options, same bytes, for any number of jobs.
+// Memory: the outline of the database, and for each job a few slots and one signature.
+// Throws std::runtime_error with a complete message.
+BuildSummary build_map(const BuildOptions& options, Progress& progress);
+
+}  // namespace zonepack::packer

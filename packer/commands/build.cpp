@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/commands/build.hpp"
+
+#include <unistd.h>
+
+#include <iomanip>
+#include <iostream>
+#include <memory>
+
+#include "packer/build/map_builder.hpp"
+#include "packer/commands/command_line.hpp"
+
+namespace zonepack::packer {
+namespace {
+
+struct Arguments {
+  BuildOptions options;
+  JsonOutput json;
+};
+
+double ratio(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+nlohmann::ordered_json to_json(const BuildSummary& s, const std::filesystem::path& out) {
+  nlohmann::ordered_json json;
+  json["map"] = out.string();
+  json["schema_version"] = s.schema_version;
+  json["signatures"] = s.signatures;
+  json["features"] = s.features;
+  json["zones"] = s.packs.size();
+  json["signatures_deleted"] = s.deleted;
+  json["signatures_unlinked"] = nlohmann::ordered_json::object();
+  for (const auto& [session, count] : s.unlinked_by_session) {
+    json["signatures_unlinked"][std::to_string(session)] = count;
+  }
+  json["signatures_unlinked_dropped"] = s.unlinked_dropped;
+  json["orphans"] = s.orphans.size();
+  json["orphans_dropped"] = s.orphans_dropped;
+  json["damaged"] = nlohmann::ordered_json::array();
+  for (const Damage& d : s.damages) {
+    json["damaged"].push_back(
+        {{"signature", d.signature}, {"column", d.column}, {"problem", d.problem}});
+  }
+  json["charged_bytes"] = s.charged_bytes;
+  json["charged_over_feature_rows"] = ratio(s.charged_bytes, s.feature_row_bytes);
+  json["stored_bytes"] = s.stored_bytes;
+  json["stored_over_source"] = ratio(s.stored_bytes, s.source_bytes);
+  json["source_bytes"] = s.source_bytes;
+  json["pack_bytes"] = s.pack_bytes;
+  json["smallest_budget_bytes"] = s.smallest.bytes;
+  json["unchanged"] = s.unchanged;
+  json["warnings"] = s.warnings;
+  json["signatures_per_zone"] = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < s.packs.size(); ++i) {
+    json["signatures_per_zone"][s.zone_names[i]] = s.packs[i].signatures;
+  }
+  return json;
+}
+
+void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostream& out) {
+  for (const std::string& warning : s.warnings) out << "warning: " << warning << "\n";
+  std::size_t unlinked = 0;
+  for (const auto& [session, count] : s.unlinked_by_session) unlinked += count;
+  if (unlinked > 0) {
+    out << "WARNING: " << unlinked << " signatures have no optimised pose (";
+    const char* separator = "";
+    for (const auto& [session, count] : s.unlinked_by_session) {
+      out << separator << "session " << session << ": " << count;
+      separator = ", ";
+    }
+    out << "); "
+        << (options.unlinked == UnlinkedPolicy::kDrop
+                ? "they were left out (--unlinked drop)"
+                : "they were placed by odometry, which may be far off (--unlinked odometry)")
+        << "\n";
+  }
+  if (options.unlinked == UnlinkedPolicy::kOdometry && s.unlinked_dropped > 0) {
+    out << "WARNING: " << s.unlinked_dropped
+        << " signatures have no pose at all and were left out\n";
+  }
+  if (!s.orphans.empty()) {
+    const Orphan& first = s.orphans.front();
+    out << "warning: " << s.orphans.size() << " signatures stand in no zone ("
+        << (options.orphans == OrphanPolicy::kDrop ? "left out" : "given to the nearest")
+        << "), such as " << first.id << " at " << point_text(first.p_map) << ", "
+        << number_text(first.distance_m) << " m off zone "
+        << "\n";
+  }
+  for (const Damage& d : s.damages) {
+    out << "WARNING: signature " << d.signature << " left out, " << d.column << ": " << d.problem
+        << "\n";
+  }
+  if (s.features == 0) {
+    out << "warning: no signature has features; a localizer will find nothing to match\n";
+  }
+}
+
+void run(const Arguments& arguments, std::ostream& text) {
+  const BuildOptions& options = arguments.options;
+  Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
+  const BuildSummary s = build_map(options, progress);
+  print_trouble(s, options, std::cerr);
+  text << options.out.string() << ": " << s.signatures << " signatures, " << s.features
+       << " features in " << s.packs.size() << " zones" << (s.unchanged ? " (unchanged)" : "")
+       << "\n"
+       << std::fixed << std::setprecision(3) << "  charged " << s.charged_bytes << " bytes ("
+       << ratio(s.charged_bytes, s.feature_row_bytes) << " of the database's feature rows), stored "
+       << s.stored_bytes << " (" << ratio(s.stored_bytes, s.source_bytes)
+       << " of the database's own)\n"
+       << "  smallest budget " << s.smallest.bytes << " bytes\n";
+  arguments.json.write(to_json(s, options.out));
+}
+
+}  // namespace
+
+void add_build_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<Arguments>();
+  BuildOptions& options = arguments->options;
+  CLI::App* const command =
+      app.add_subcommand("build", "Pack a SLAM map database into one pack per zone and a manifest");
+  command->add_option("--db", options.database, "RTAB-Map database, schema 0.11 to 0.23; only read")
+      ->required()
+      ->type_name("DB");
+  command->add_option("--zones", options.zones, "zone polygons and portals, GeoJSON in metres")
+      ->required()
+      ->type_name("ZONES.geojson");
+  command->add_option("--out", options.out, "the map's folder; created when missing")
+      ->required()
+      ->type_name("DIR");
+  add_payload_option(*command, "--payload", options.payload,
+                     "what to pack beside the core, of features,scan,grid,image,depth,userdata; "
+                     "default all");
+  add_size_option(*command, "--max-zone-bytes", options.max_zone_bytes,
+                  "split zones that would charge more into parts along their length");
+  command
+      ->add_option("--orphans", options.orphans,
+                   "signatures in no zone: nearest (default), drop or error")
+      ->transform(
+          CLI::Transformer(std::map<std::string, OrphanPolicy>{{"nearest", OrphanPolicy::kNearest},
+                                                               {"drop", OrphanPolicy::kDrop},
+                                                               {"error", OrphanPolicy::kError}}))
+      ->type_name("POLICY");
+  command->add_option("--snap", options.snap_m, "how far portal ends may stand off a border")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 10.0))
+      ->type_name("METRES");
+  command
+      ->add_option("--unlinked", options.unlinked,
+                   "signatures without an optimised pose: odometry (default), drop or error")
+      ->transform(CLI::Transformer(
+          std::map<std::string, UnlinkedPolicy>{{"odometry", UnlinkedPolicy::kOdometry},
+                                                {"drop", UnlinkedPolicy::kDrop},
+                                                {"error", UnlinkedPolicy::kError}}))
+      ->type_name("POLICY");
+  command
+      ->add_option("--damaged", options.damaged,
+                   "signatures that cannot be read whole: error (default) or skip")
+      ->transform(CLI::Transformer(std::map<std::string, DamagedPolicy>{
+          {"skip", DamagedPolicy::kSkip}, {"error", DamagedPolicy::kError}}))
+      ->type_name("POLICY");
+  command->add_option("--jobs", options.jobs, "threads; default one for each core")
+      ->check(CLI::Range(1, 256))
+      ->type_name("N");
+  arguments->json.add_option(*command);
+  command->callback([arguments, &exit_code] {
+    run(*arguments, arguments->json.text());
+    exit_code = 0;
+  });
+}
+
+}  // namespace zonepack::packer

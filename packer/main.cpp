@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// zonepack: the workstation's tool. Wiring only; each subcommand lives in packer/commands.
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "packer/commands/build.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Packs SLAM maps into zones that a robot can keep within a byte budget.\n"
+      "Exit codes: 0 done, 1 the input or the world is bad, 2 usage.",
+      "zonepack");
+  app.set_version_flag("--version", ZONEPACK_VERSION);
+  app.require_subcommand(1);
+  int exit_code = 0;
+  zonepack::packer::add_build_command(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::cerr << "zonepack: " << error.what() << "\n";
+    return 1;
+  }
+  return exit_code;
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/pack_format/pack_reader.hpp"
+
+#include <array>
+
+namespace zonepack {
+
+Result<PackReader> PackReader::open(const std::string& path, const Digest32* expected) {
+  Result<StorageFile> file = StorageFile::open(path);
+  if (!file) return file.error();
+  if (file->size() < sizeof(PackHeader) + sizeof(PackTail)) {
+    return {ErrorCode::kTruncated, static_cast<std::int64_t>(file->size())};
+  }
+  std::array<std::byte, sizeof(PackTail)> last;
+  if (const auto read = file->read_at(file->size() - last.size(), last); !read) return read.error();
+  const Result<PackTail> tail = check_tail(last, file->size());
+  if (!tail) return tail.error();
+  if (expected != nullptr && tail->digest != *expected) return ErrorCode::kMismatch;
+  std::array<std::byte, sizeof(PackHeader)> header;
+  if (const auto read = file->read_at(0, header); !read) return read.error();
+
+  PackReader reader(std::move(*file), *tail);
+  const auto index = std::as_writable_bytes(std::span(reader.words_)).first(tail->index_size);
+  if (const auto read = reader.file_.read_at(tail->index_offset, index); !read) return read.error();
+  const Result<const fb::PackIndex*> checked = check_index(header, index, *tail);
+  if (!checked) return checked.error();
+  reader.index_ = *checked;
+  return reader;
+}
+
+Result<DecodedPack> DecodedPack::decode(const PackReader& pack, PayloadMask wanted) {
+  DecodedPack decoded;
+  const PayloadMask mask = payload_closure(wanted, pack.index().grid_needs_scan());
+  std::vector<std::byte> stored;
+  for (const fb::ChunkEntry* entry : *pack.index().chunks()) {
+    if ((mask & mask_of(entry->kind())) == 0) continue;
+    stored.resize(entry->stored_size());
+    if (const auto read = pack.file().read_at(entry->offset(), stored); !read) return read.error();
+    std::vector<Line>& memory = decoded.memory_.emplace_back((entry->decoded_size() + 63) / 64);
+    const auto chunk = decode_chunk(*entry, stored, reinterpret_cast<std::byte*>(memory.data()));
+    if (!chunk) return chunk.error();
+    decoded.chunks_.push_back({entry->kind(), *chunk});
+  }
+  Result<ZoneView> view = ZoneView::make(decoded.chunks_);
+  if (!view) return view.error();
+  decoded.view_ = std::make_unique<ZoneView>(std::move(*view));
+  return decoded;
+}
+
+}  // namespace zonepack

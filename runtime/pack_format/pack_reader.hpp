@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "platform/base/result.hpp"
+#include "platform/storage.hpp"
+#include "runtime/pack_format/pack_file.hpp"
+#include "runtime/pack_format/zone_view.hpp"
+
+namespace zonepack {
+
+// An open pack with its index read and checked.
+class PackReader {
+ public:
+  // With `expected`, kMismatch for a whole pack that is another than the one asked for.
+  static Result<PackReader> open(const std::string& path, const Digest32* expected = nullptr);
+
+  const fb::PackIndex& index() const noexcept { return *index_; }
+  const PackTail& tail() const noexcept { return tail_; }
+  const StorageFile& file() const noexcept { return file_; }
+
+ private:
+  PackReader(StorageFile file, const PackTail& tail)
+      : file_(std::move(file)), tail_(tail), words_((tail.index_size + 7) / 8) {}
+  StorageFile file_;
+  PackTail tail_;
+  std::vector<std::uint64_t> words_;  // the index, aligned
+  const fb::PackIndex* index_ = nullptr;
+};
+
+// A pack's chunks of some kinds decoded into memory of its own, for tools and tests. The robot
+// decodes into its arena instead (runtime/map/loader.hpp).
+class DecodedPack {
+ public:
+  // Errors: those of reading and decoding, and kMismatch of ZoneView; detail is the file offset.
+  static Result<DecodedPack> decode(const PackReader& pack, PayloadMask wanted);
+
+  const ZoneView& view() const noexcept { return *view_; }
+  const std::vector<ChunkRef>& chunks() const noexcept { return chunks_; }
+
+ private:
+  struct alignas(64) Line {
+    std::byte bytes[64];
+  };
+  std::vector<std::vector<Line>> memory_;
+  std::vector<ChunkRef> chunks_;
+  std::unique_ptr<ZoneView> view_;
+};
+
+}  // namespace zonepack
