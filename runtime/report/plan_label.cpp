@@ -83,6 +83,9 @@ std::optional<PlacedLabel> place_label(std::span<const std::vector<Px>> rings, d
   if (rings.empty() || rings[0].size() < 3) return std::nullopt;
   const Polygon polygon = as_polygon(rings);
   const Box2 area = bounds(polygon.outer);
+  if (area.max.x_m - area.min.x_m < width || area.max.y_m - area.min.y_m < height) {
+    return std::nullopt;
+  }
   const Point2 middle{(area.min.x_m + area.max.x_m) / 2, (area.min.y_m + area.max.y_m) / 2};
   const LabelGround ground =
       within({{area.min.x_m, area.min.y_m}, {area.max.x_m, area.max.y_m}}, everything);
