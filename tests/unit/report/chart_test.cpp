@@ -46,15 +46,21 @@ TEST(ChartScale, ThinsEqualStepsToTheirEnds) {
   expect_points(series_lines(series(samples), unit_scale())[0], {{0, 93}, {100, 93}});
 }
 
-TEST(ChartScale, ThinningKeepsThePeak) {
+TEST(ChartScale, ThinningKeepsPeaksAndDips) {
   std::vector<Sample> samples;
-  for (int i = 0; i <= 100000; ++i) samples.push_back({i / 10000.0, i == 54321 ? 99.0 : 1.0});
+  for (int i = 0; i <= 100000; ++i) {
+    samples.push_back({i / 10000.0, i == 54321 ? 99.0 : i == 54322 ? 1.0 : 50.0});
+  }
   const auto lines = series_lines(series(samples, false), unit_scale());
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_LE(lines[0].size(), 4u * 101);
-  double highest = 100;
-  for (const Px& p : lines[0]) highest = std::min(highest, p.y);
+  double highest = 100, lowest = 0;
+  for (const Px& p : lines[0]) {
+    highest = std::min(highest, p.y);
+    lowest = std::max(lowest, p.y);
+  }
   EXPECT_DOUBLE_EQ(highest, 1);
+  EXPECT_DOUBLE_EQ(lowest, 99);
 }
 
 TEST(ChartScale, AGapBreaksTheLine) {

@@ -65,15 +65,12 @@ const std::vector<BaselineRow> kNoBaseline;
 TEST(RunFigures, NeighboursNeverShareAColour) {
   RunTrace trace;
   for (int i = 0; i < 40; ++i) trace.zones.push_back({std::to_string(i), "", box(i, i + 1), 1, 1});
-  for (ZoneId i = 0; i < 40; ++i) {
-    for (ZoneId k = 1; k <= 3; ++k) trace.portals.push_back({{}, i, (i + k) % 40});
-  }
+  // A lobby with 39 rooms: any order of nine colours would give some room the lobby's.
+  for (ZoneId room = 1; room < 40; ++room) trace.portals.push_back({{}, 0, room});
   trace.portals.push_back({{}, 3, kNoZone});  // a portal to nowhere is no neighbour
   const auto colors = zone_colors(trace);
   ASSERT_EQ(colors.size(), 40u);
-  for (ZoneId i = 0; i < 40; ++i) {
-    for (ZoneId k = 1; k <= 3; ++k) EXPECT_NE(colors[i], colors[(i + k) % 40]) << i << " " << k;
-  }
+  for (ZoneId room = 1; room < 40; ++room) EXPECT_NE(colors[room], colors[0]) << room;
 }
 
 TEST(RunFigures, TheTimelineHasOneBlockForEachStay) {
