@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/replay/run_files.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+namespace zonepack {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class RunFiles : public testing::Test {
+ protected:
+  ~RunFiles() override { ::unlink(path_.c_str()); }
+  void write(const std::string& text) { std::ofstream(path_, std::ios::binary) << text; }
+
+  std::string path_ = testing::TempDir() + "run_file_" + std::to_string(::getpid()) + ".txt";
+  std::string fault_;
+};
+
+TEST_F(RunFiles, ReadsCorrectionsToTheNanosecond) {
+  write(
+      "# stamp received x y yaw sigma_x sigma_y sigma_yaw\r\n"
+      "1718021600.000000 1718021600.141691 0.8842 10.9826 -2.60115 0.030 0.031 0.00873\r\n"
+      "\n"
+      "  1718021601.123456789\t1718021602 -1e-1 +2 3 nan -0.03 inf\n");
+  const auto read = read_corrections(path_, fault_);
+  ASSERT_TRUE(read.has_value()) << fault_;
+  ASSERT_EQ(read->size(), 2u);
+  EXPECT_EQ((*read)[0].stamp_ns, 1'718'021'600'000'000'000);
+  EXPECT_EQ((*read)[0].received_ns, 1'718'021'600'141'691'000);
+  EXPECT_EQ((*read)[0].T_map_base, (Pose2{0.8842, 10.9826, -2.60115}));
+  EXPECT_EQ((*read)[0].sigma_y_m, 0.031);
+  EXPECT_EQ((*read)[1].stamp_ns, 1'718'021'601'123'456'789);
+  EXPECT_EQ((*read)[1].T_map_base.x_m, -0.1);
+  EXPECT_TRUE(std::isnan((*read)[1].sigma_x_m));
+  EXPECT_EQ((*read)[1].sigma_y_m, -0.03);
+}
+
+TEST_F(RunFiles, CorrectionsComeInOrderOfReception) {
+  write("1 5 1 0 0 1 1 1\n3 4 2 0 0 1 1 1\n2 4 3 0 0 1 1 1\n");
+  const auto read = read_corrections(path_, fault_);
+  ASSERT_TRUE(read.has_value());
+  EXPECT_EQ((*read)[0].T_map_base.x_m, 2);
+  EXPECT_EQ((*read)[1].T_map_base.x_m, 3);
+  EXPECT_EQ((*read)[2].T_map_base.x_m, 1);
+}
+
+TEST_F(RunFiles, ABadLineIsNamedWithTheExpectedColumns) {
+  struct Case {
+    const char *text, *fault;
+  };
+  for (const Case& c : {
+           Case{"1 2 3 4 5 6 7\n", ":1: 7 columns; expected stamp received x y yaw"},
+           Case{"1 2 3 4 5 6 7 8 9\n", ":1: 9 columns"},
+           Case{"# x\n1 2 3 4 five 6 7 8\n", ":2: \"five\" is not a number"},
+           Case{"1 2 3 4 5 6 7 8x\n", ":1: \"8x\" is not a number"},
+           Case{"-1 2 3 4 5 6 7 8\n", ":1: \"-1\" is not a stamp in seconds"},
+           Case{"nan 2 3 4 5 6 7 8\n", ":1: \"nan\" is not a stamp"},
+           Case{"1 99999999999 3 4 5 6 7 8\n", ":1: \"99999999999\" is not a stamp"},
+           Case{"1.2.3 2 3 4 5 6 7 8\n", ":1: \"1.2.3\" is not a stamp"},
+           Case{"1 1e300 3 4 5 6 7 8\n", ":1: \"1e300\" is not a stamp"},
+       }) {
+    write(c.text);
+    EXPECT_FALSE(read_corrections(path_, fault_).has_value()) << c.text;
+    EXPECT_THAT(fault_, StartsWith(path_ + c.fault));
+  }
+  EXPECT_FALSE(read_corrections(path_ + ".absent", fault_).has_value());
+  EXPECT_THAT(fault_, HasSubstr("No such file"));
+  write("");
+  EXPECT_TRUE(read_corrections(path_, fault_)->empty());  // a run without fixes
+}
+
+TEST_F(RunFiles, StampsMayHaveAnExponent) {
+  write("1.718021600500000e+09 1718021601 0 0 0 1 1 1\n");
+  const auto read = read_corrections(path_, fault_);
+  ASSERT_TRUE(read.has_value()) << fault_;
+  EXPECT_NEAR(static_cast<double>((*read)[0].stamp_ns), 1'718'021'600.5e9, 500);
+}
+
+TEST_F(RunFiles, TruthIsInterpolatedTheShortWayRound) {
+  // Headings 170 and -170 degrees: sine and cosine of the half angles.
+  write(
+      "# t x y z qx qy qz qw v w\n"
+      "10.0 0 0 0 0 0 0.99619470 0.08715574 0.5 0.1\n"
+      "10.2 1 2 0 0 0 0.99619470 -0.08715574 0.5 0.1\n");
+  const auto truth = read_truth(path_, fault_);
+  ASSERT_TRUE(truth.has_value()) << fault_;
+  EXPECT_EQ(truth->at(9'999'999'999), std::nullopt);
+  EXPECT_EQ(truth->at(10'200'000'001), std::nullopt);
+  const Pose2 middle = *truth->at(10'100'000'000);
+  EXPECT_NEAR(middle.x_m, 0.5, 1e-12);
+  EXPECT_NEAR(middle.y_m, 1.0, 1e-12);
+  EXPECT_NEAR(std::abs(middle.yaw_rad), 3.14159265, 1e-6);
+  EXPECT_NEAR(truth->at(10'050'000'000)->yaw_rad, 175 * 3.14159265 / 180, 1e-6);
+  EXPECT_NEAR(truth->at(10'200'000'000)->yaw_rad, -170 * 3.14159265 / 180, 1e-6);
+}
+
+TEST_F(RunFiles, TruthThatStepsBackOrTurnsIntoNothingIsRefused) {
+  struct Case {
+    const char *text, *fault;
+  };
+  for (const Case& c : {
+           Case{"2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n",
+                ":2: stamp 1 before the one on the line above"},
+           Case{"1 0 0 0 0 0 0 0\n", ":1: a quaternion that is not of length 1; expected t x y z"},
+           Case{"1 0 0 0 0 0 nan 1\n", ":1: a quaternion"},
+           Case{"1 inf 0 0 0 0 0 1\n", ":1: a position that is not finite"},
+           Case{"1 0 0 0 0 0 1\n", ":1: 7 columns; expected t x y z qx qy qz qw"},
+           Case{"# nothing\n", ": no samples"},
+       }) {
+    write(c.text);
+    EXPECT_FALSE(read_truth(path_, fault_).has_value()) << c.text;
+    EXPECT_THAT(fault_, StartsWith(path_ + c.fault));
+  }
+}
+
+}  // namespace
+}  // namespace zonepack
