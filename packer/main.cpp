@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "packer/commands/build.hpp"
+#include "packer/commands/report.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app(
@@ -15,6 +16,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = 0;
   zonepack::packer::add_build_command(app, exit_code);
+  zonepack::packer::add_report_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -45,6 +45,7 @@ class MapBuilder {
     place();
     MapFolder folder(options_.out);
     pack(folder, plan_, zone_of_);
+    if (options_.max_zone_bytes > 0) split(folder);
     finish(folder);
     return std::move(summary_);
   }
@@ -54,6 +55,7 @@ class MapBuilder {
   void place();
   void pack(MapFolder& folder, const ZonePlan& plan, const std::vector<std::uint32_t>& zone_of);
   void pack_zone(RtabmapDatabase& database, MapFolder& folder, std::size_t zone);
+  void split(MapFolder& folder);
   void finish(MapFolder& folder);
   void refuse_damaged() const;
   ByteCount charged(std::size_t zone) const;
@@ -212,6 +214,45 @@ ByteCount MapBuilder::charged(std::size_t zone) const {
   return packs_[zone].slots[slot_table_index(
              payload_closure(kDefaultPayload, packs_[zone].grid_needs_scan), options_.payload)] *
          kSlotBytes;
+}
+
+// Weights are shares of decoded bytes; what slots round up on top is found by packing the parts,
+// with a lower limit each time one comes out too large.
+void MapBuilder::split(MapFolder& folder) {
+  const auto largest = [this] {
+    ByteCount most = 0;
+    for (std::size_t i = 0; i < packs_.size(); ++i) most = std::max(most, charged(i));
+    return most;
+  };
+  if (largest() <= options_.max_zone_bytes) return;
+  std::vector<ByteCount> weights(places_.size());
+  for (std::size_t zone = 0; zone < members_.size(); ++zone) {
+    std::size_t ordinal = 0;
+    for (const std::size_t member : members_[zone]) {
+      if (skipped_.contains(places_[member].id)) continue;
+      weights[member] = packs_[zone].signature_bytes[ordinal++];
+    }
+  }
+  const ZonePlan whole = plan_;
+  const std::vector<std::uint32_t> whole_zone_of = zone_of_;
+  ByteCount limit = options_.max_zone_bytes;
+  while (largest() > options_.max_zone_bytes) {
+    SplitPlan split;
+    try {
+      split = split_oversized(whole, places_, whole_zone_of, weights, limit);
+    } catch (const std::runtime_error& error) {
+      if (limit == options_.max_zone_bytes) throw;
+      throw std::runtime_error(std::string(error.what()) + "; slots of " +
+                               format_byte_count(kSlotBytes) + " round up, so give " +
+                               format_byte_count(options_.max_zone_bytes - limit) +
+                               " more than that");
+    }
+    plan_ = std::move(split.plan);
+    zone_of_ = std::move(split.zone_of);
+    summary_.split = std::move(split.split);
+    pack(folder, plan_, zone_of_);
+    limit -= std::min(limit, kSlotBytes);
+  }
 }
 
 std::vector<fb::ZoneEdge> MapBuilder::edges() const {

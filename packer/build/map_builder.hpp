@@ -11,6 +11,7 @@
 #include "packer/encode/pack_writer.hpp"
 #include "packer/sources/damage.hpp"
 #include "packer/zones/partition.hpp"
+#include "packer/zones/split.hpp"
 #include "packer/zones/zone_file.hpp"
 #include "runtime/pack_format/accounting.hpp"
 
@@ -43,6 +44,7 @@ struct BuildSummary {
   std::vector<Orphan> orphans;
   std::size_t orphans_dropped = 0;
   std::vector<Damage> damages;        // of signatures skipped
+  std::vector<SplitZone> split;
   std::vector<std::string> warnings;  // complete sentences
   std::vector<std::string> zone_names;
   std::vector<PackSummary> packs;   // by zone

@@ -87,6 +87,9 @@ void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostr
         << number_text(first.distance_m) << " m off zone "
         << "\n";
   }
+  for (const SplitZone& split : s.split) {
+    out << "zone " << split.name << " was split into " << split.parts << " parts\n";
+  }
   for (const Damage& d : s.damages) {
     out << "WARNING: signature " << d.signature << " left out, " << d.column << ": " << d.problem
         << "\n";
