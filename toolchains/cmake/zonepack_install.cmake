@@ -1,2 +1,43 @@
 # SPDX-License-Identifier: Apache-2.0
 # install(): programs, libraries, headers and the package that find_package(zonepack) reads.
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/zonepack)
+
+function(zonepack_install_libraries export)
+  install(TARGETS ${ARGN} EXPORT ${export} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT ${export} NAMESPACE zonepack:: DESTINATION ${package_dir})
+endfunction()
+
+# Headers stand below include/zonepack as they stand in the source tree.
+function(zonepack_install_headers)
+  foreach(dir ${ARGN})
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/${dir} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/zonepack
+            FILES_MATCHING PATTERN "*.hpp")
+  endforeach()
+endfunction()
+
+zonepack_install_libraries(zonepack-runtime zonepack_platform zonepack_pack_format zonepack_report
+                           zonepack_core zonepack_runtime)
+zonepack_install_headers(platform runtime)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/generated/runtime
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/zonepack FILES_MATCHING PATTERN "*_generated.h")
+if(ZONEPACK_BUILD_PACKER)
+  zonepack_install_libraries(zonepack-packer zonepack_packer)
+  zonepack_install_headers(packer)
+endif()
+foreach(program zonepack zoned)
+  if(TARGET ${program})
+    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  endif()
+endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/zonepack/config)
+install(FILES ${PROJECT_SOURCE_DIR}/runtime/pack_format/FORMAT.md OPTIONAL
+        DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+configure_package_config_file(${PROJECT_SOURCE_DIR}/toolchains/cmake/zonepackConfig.cmake.in
+                              ${PROJECT_BINARY_DIR}/zonepackConfig.cmake
+                              INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/zonepackConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/zonepackConfig.cmake
+              ${PROJECT_BINARY_DIR}/zonepackConfigVersion.cmake DESTINATION ${package_dir})

@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: Apache-2.0
+# Tests of whole programs and of the repository itself.
+
+add_test(NAME system/include_arrows
+         COMMAND ${CMAKE_CURRENT_LIST_DIR}/include_arrows_test.sh ${PROJECT_SOURCE_DIR})
+if(TARGET zonepack)
+  add_test(NAME system/install_and_find_package
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/install_test.sh ${PROJECT_BINARY_DIR}
+                   ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests/data)
+endif()
+if(TARGET zoned)
+  add_test(NAME system/runtime_without_packer
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/runtime_alone_test.sh ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/runtime_without_packer PROPERTIES
+                       ENVIRONMENT "CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}")
+endif()
