@@ -42,21 +42,28 @@ void check_length(const SignatureRecord& record, const char* column, std::size_t
                            std::to_string(kMaxBlobBytes) + " there");
 }
 
+// Any fixed order will do: places are given as values come.
+struct ByLengthThenBits {
+  bool operator()(const Bytes& a, const Bytes& b) const {
+    if (a.size() != b.size()) return a.size() < b.size();
+    return !a.empty() && std::memcmp(a.data(), b.data(), a.size()) < 0;
+  }
+};
+
 // Gives each distinct value of a run one place.
-template <typename Key>
 class Interned {
  public:
-  std::uint32_t place_of(const Key& key) {
+  std::uint32_t place_of(const Bytes& key) {
     const auto [found, inserted] =
         places_.emplace(key, static_cast<std::uint32_t>(in_order_.size()));
     if (inserted) in_order_.push_back(&found->first);
     return found->second;
   }
-  const std::vector<const Key*>& in_order() const { return in_order_; }
+  const std::vector<const Bytes*>& in_order() const { return in_order_; }
 
  private:
-  std::map<Key, std::uint32_t> places_;
-  std::vector<const Key*> in_order_;
+  std::map<Bytes, std::uint32_t, ByLengthThenBits> places_;
+  std::vector<const Bytes*> in_order_;
 };
 
 // Matrices are told apart by their bits, so that NaN and -0 come back as they were.
@@ -114,8 +121,8 @@ std::size_t core_run(std::span<const CoreRecord> records, std::uint64_t capacity
   std::uint64_t size = kFrameBytes;
   std::size_t count = 0;
   // Distinct matrices and calibrations are stored once, so the bounds are taken with them shared.
-  Interned<Bytes> informations;
-  Interned<Bytes> calibrations;
+  Interned informations;
+  Interned calibrations;
   for (const CoreRecord& core : records) {
     std::uint64_t more = core.size_bound;
     for (const Link& link : core.record.links) {
@@ -138,8 +145,8 @@ std::size_t core_run(std::span<const CoreRecord> records, std::uint64_t capacity
 
 Bytes build_core_chunk(std::span<const CoreRecord> records) {
   flatbuffers::FlatBufferBuilder builder(kSlotBytes);
-  Interned<Bytes> informations;
-  Interned<Bytes> calibrations;
+  Interned informations;
+  Interned calibrations;
   std::vector<flatbuffers::Offset<fb::Signature>> signatures;
   for (const CoreRecord& core : records) {
     const SignatureRecord& record = core.record;
