@@ -4,10 +4,11 @@
 #include <CLI/CLI.hpp>
 #include <cstring>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
-#include <string_view>
 #include <vector>
 
+#include "packer/commands/command_line.hpp"
 #include "platform/storage.hpp"
 #include "runtime/pack_format/accounting.hpp"
 #include "runtime/pack_format/checksum.hpp"
@@ -32,14 +33,9 @@ std::runtime_error cannot_read(const std::string& path, const Error& error) {
 }
 
 std::string payload_names(const fb::Manifest& manifest) {
+  const std::string list = payload_text(kDefaultPayload & manifest.payload_mask());
   std::string names;
-  for (const fb::PayloadKind kind : fb::EnumValuesPayloadKind()) {
-    if ((mask_of(kind) & kDefaultPayload & manifest.payload_mask() & ~kCoreOnly) == 0) continue;
-    if (!names.empty()) names += ", ";
-    for (const char c : std::string_view(fb::EnumNamePayloadKind(kind))) {
-      names += static_cast<char>(c | 0x20);  // lower case, as --payload spells them
-    }
-  }
+  for (const char c : list) names += c == ',' ? std::string(", ") : std::string(1, c);
   return names.empty() ? "poses only" : names;
 }
 
@@ -50,7 +46,7 @@ report::PackedZone zone_of(const fb::Zone& zone, std::uint32_t slots) {
                          .polygon = polygon_of(zone),
                          .signatures = zone.signatures(),
                          .features = zone.features(),
-                         .charged_bytes = charged_with(0, slots),
+                         .charged_bytes = slots * kSlotBytes,
                          .stored_bytes = 0,
                          .signature_positions = {}};
   const PayloadMask loaded = payload_closure(kDefaultPayload, zone.grid_needs_scan());
@@ -98,7 +94,9 @@ report::PackReport read_pack_report(const std::string& folder) {
   map.version = to_hex(manifest_digest(*file));
   map.payload = payload_names(manifest);
   map.source = source_text(*manifest.provenance());
-  map.fixed_bytes = costs.fixed_bytes;
+  const std::uint64_t slots =
+      std::accumulate(costs.zone_slots.begin(), costs.zone_slots.end(), std::uint64_t{0});
+  map.table_bytes = charged_with(costs.fixed_bytes, slots) - slots * kSlotBytes;
   map.smallest_budget_bytes = smallest.bytes;
   map.smallest_budget_pair = pair_text(manifest, smallest);
   for (flatbuffers::uoffset_t i = 0; i < manifest.zones()->size(); ++i) {
@@ -120,7 +118,11 @@ void add_report_command(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "report", "Draw a map: the floor plan with its zones coloured by the bytes they charge");
   command->add_option("DIR", options->folder, "folder of the map")->required();
-  command->add_option("--out", options->out, "file to write: .html, .png or .svg")->required();
+  command->add_option("--out", options->out, "file to write: .html, .png or .svg")
+      ->required()
+      ->check([](const std::string& path) {
+        return report::fault_of_report_name(path).value_or(std::string());
+      });
   command->callback([options, &exit_code] {
     const report::Report page = report::make_pack_report(read_pack_report(options->folder));
     if (const auto problem = report::write_report(options->out, page)) {

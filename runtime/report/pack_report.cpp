@@ -89,13 +89,13 @@ Report make_pack_report(const PackReport& map) {
                   " with " + format_count(signatures) + " signatures. A robot needs at least " +
                   bytes_text(map.smallest_budget_bytes) +
                   " to hold any zone and a neighbour; all at once would take " +
-                  bytes_text(map.fixed_bytes + charged) + ".";
+                  bytes_text(map.table_bytes + charged) + ".";
   page.facts = {
       {"smallest budget", bytes_text(map.smallest_budget_bytes),
        format_count(map.smallest_budget_bytes) + " bytes"},
       {"set by", map.smallest_budget_pair, "the pair that needs most together"},
       {"all zones charge", bytes_text(charged), format_count(charged) + " bytes"},
-      {"tables and buffers", bytes_text(map.fixed_bytes), "charged before any zone"},
+      {"tables and buffers", bytes_text(map.table_bytes), "charged on top, with every zone loaded"},
       {"stored", bytes_text(sum_of(map, &PackedZone::stored_bytes)),
        "read when every zone is loaded once"},
       {"signatures", format_count(signatures),

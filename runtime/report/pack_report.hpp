@@ -17,7 +17,7 @@ struct PackedZone {
   Polygon polygon;
   std::uint64_t signatures = 0;
   std::uint64_t features = 0;
-  ByteCount charged_bytes = 0;  // while it is in memory
+  ByteCount charged_bytes = 0;  // while it is in memory: slots x slot size
   ByteCount stored_bytes = 0;   // to read for that
   std::vector<Point2> signature_positions;
 };
@@ -29,7 +29,7 @@ struct PackReport {
   std::string source;   // where it came from and what packed it
   std::vector<PackedZone> zones;
   std::vector<Segment2> portals;
-  ByteCount fixed_bytes = 0;  // tables and buffers, whatever is loaded
+  ByteCount table_bytes = 0;  // tables and read buffers, with every zone loaded
   ByteCount smallest_budget_bytes = 0;
   std::string smallest_budget_pair;  // "C3 with H1"
 };

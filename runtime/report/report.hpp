@@ -50,6 +50,9 @@ std::string to_html(const Report& report);
 // Everything on one sheet, top to bottom.
 Svg to_sheet(const Report& report);
 
+// Nothing for a name that write_report takes, else what is wrong with it: for checking usage.
+std::optional<std::string> fault_of_report_name(const std::string& path);
+
 // Writes .html, .svg or .png (drawn by rsvg-convert), whole or not at all. Returns nothing when
 // written, else a complete message for the user.
 std::optional<std::string> write_report(const std::string& path, const Report& report);

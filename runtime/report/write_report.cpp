@@ -51,11 +51,18 @@ std::optional<std::string> write_png(const std::string& path, const std::string&
 
 }  // namespace
 
+std::optional<std::string> fault_of_report_name(const std::string& path) {
+  for (const char* kind : {".html", ".svg", ".png"}) {
+    if (path.ends_with(kind)) return std::nullopt;
+  }
+  return path + ": a report is written as .html, .svg or .png; the name ends in none of them";
+}
+
 std::optional<std::string> write_report(const std::string& path, const Report& report) {
   if (path.ends_with(".html")) return write_text(path, to_html(report));
   if (path.ends_with(".svg")) return write_text(path, to_sheet(report).file_text());
   if (path.ends_with(".png")) return write_png(path, to_sheet(report).file_text());
-  return path + ": a report is written as .html, .svg or .png; the name ends in none of them";
+  return fault_of_report_name(path);
 }
 
 }  // namespace zonepack::report

@@ -32,7 +32,7 @@ PackReport two_zones() {
                 1400000,
                 {{4, 4}}}};
   map.portals = {{{2, 2}, {4, 2}}};
-  map.fixed_bytes = 102400;
+  map.table_bytes = 102400;
   map.smallest_budget_bytes = 3248128;  // 1048576 + 2097152 + 102400
   map.smallest_budget_pair = "H1 with L1";
   return map;
