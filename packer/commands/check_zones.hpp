@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/App.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <ostream>
+#include <string>
+
+#include "packer/zones/zone_file.hpp"
+
+namespace zonepack::packer {
+
+struct CheckZonesOptions {
+  std::string zones;                        // GeoJSON
+  std::optional<std::filesystem::path> db;  // counts signatures when given
+  double snap_m = kDefaultSnap_m;
+};
+
+// Reports every fault and warning of a zone file at once, its zones and portals and, with a
+// database, how many signatures each zone holds and which stand in none. Text for people goes to
+// `text`, the same to `json`. Returns the exit code: 0 without faults, 1 with. Throws
+// std::runtime_error when a file cannot be read.
+int check_zones(const CheckZonesOptions& options, std::ostream& text, nlohmann::ordered_json& json);
+
+// `zonepack check-zones ZONES.geojson [--db DB] [--snap METRES] [--json FILE]`.
+void add_check_zones_command(CLI::App& app, int& exit_code);
+
+}  // namespace zonepack::packer

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/commands/outline.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "packer/commands/command_line.hpp"
+#include "packer/outline/map_image.hpp"
+#include "packer/outline/occupancy_map.hpp"
+#include "packer/outline/paths.hpp"
+#include "packer/sources/rtabmap_database.hpp"
+#include "platform/atomic_file.hpp"
+
+namespace zonepack::packer {
+namespace {
+
+using nlohmann::ordered_json;
+using Files = std::vector<std::pair<std::string, std::string>>;  // name, content
+
+struct FloorPlan {
+  MapImage image;
+  std::string source;
+  std::size_t grids = 0;
+  std::vector<std::string> warnings;
+};
+
+FloorPlan from_grids(RtabmapDatabase& database) {
+  FloorPlan plan;
+  plan.source = "local grids";
+  PayloadSet wanted{false, false, true, false, false, false};
+  std::optional<OccupancyMap> map;
+  SignatureRecord record;
+  for (const NodeOutline& node : database.outline().nodes) {
+    if (!node.pose || node.damaged) continue;
+    try {
+      database.read(node.id, wanted, record);
+    } catch (const DamagedSignature& damage) {
+      plan.warnings.push_back(std::string(damage.what()) + "; its grid is left out");
+      continue;
+    }
+    if (!record.grid || !(record.grid->cell_size > 0)) continue;
+    if (!map) map.emplace(decimal_of(record.grid->cell_size));
+    map->add(*record.grid, *node.pose);
+    ++plan.grids;
+  }
+  if (map) plan.image = map->image();
+  return plan;
+}
+
+FloorPlan floor_plan(RtabmapDatabase& database) {
+  const std::optional<OptimisedMap>& own = database.outline().optimised_map;
+  if (own && own->resolution > 0) return {image_of(*own), "the database's own map", 0, {}};
+  return from_grids(database);
+}
+
+[[noreturn]] void cannot_write(const std::string& path, const Error& error) {
+  throw std::runtime_error(path +
+                           ": cannot write: " + std::strerror(static_cast<int>(error.detail)) +
+                           "; the files that were there are untouched");
+}
+
+void write_together(const std::filesystem::path& folder, const Files& files) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw std::runtime_error(folder.string() + ": cannot make the folder: " + error.message());
+  std::vector<AtomicFile> parts;
+  for (const auto& [name, content] : files) {
+    const std::string path = (folder / name).string();
+    if (std::filesystem::is_directory(path)) cannot_write(path, {ErrorCode::kIo, EISDIR});
+    Result<AtomicFile> part = AtomicFile::create(path);
+    if (!part) cannot_write(path, part.error());
+    if (const Result<void> written = part->write(content); !written) {
+      cannot_write(path, written.error());
+    }
+    parts.push_back(std::move(*part));
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (const Result<void> done = parts[i].commit(); !done) {
+      cannot_write((folder / files[i].first).string(), done.error());
+    }
+  }
+}
+
+ordered_json to_json(const FloorPlan& plan) {
+  const MapImage& image = plan.image;
+  if (image.cells.empty()) return nullptr;
+  return {{"source", plan.source},
+          {"grids", plan.grids},
+          {"width", image.width},
+          {"height", image.height},
+          {"resolution_m", image.resolution_m},
+          {"origin", {image.x_min_m, image.y_min_m}},
+          {"free_cells", image.count(Cell::kFree)},
+          {"occupied_cells", image.count(Cell::kOccupied)},
+          {"unknown_cells", image.count(Cell::kUnknown)}};
+}
+
+void print_next_step(const OutlineOptions& options, bool with_map, std::ostream& text) {
+  const std::string folder = options.out.string();
+  text
+      << "\nNext: draw the zones, for example in QGIS.\n"
+         "  1. Open "
+      << folder << "/signatures.geojson, trajectories.geojson" << (with_map ? " and map.pgm" : "")
+      << ". Coordinates are metres of the map frame;\n"
+         "     EPSG:3857 only stands for \"a plane in metres\". Keep it for the project and for "
+         "every "
+         "layer.\n"
+         "  2. New layer of type Polygon with text fields name, zone_type and label; draw a "
+         "polygon "
+         "for every room\n"
+         "     and corridor. Turn on snapping to vertices and segments, so that neighbours share "
+         "their "
+         "borders.\n"
+         "  3. Portals are found where zones share a border. To say where the doors are, add lines "
+         "with\n"
+         "     \"portal\": true and \"zones\": [\"A\", \"B\"] to the exported file.\n"
+         "  4. Export as GeoJSON in EPSG:3857 (not WGS 84: that would turn metres into degrees), "
+         "then\n"
+         "     zonepack check-zones zones.geojson --db "
+      << options.db.string() << "\n";
+}
+
+}  // namespace
+
+void write_outline(const OutlineOptions& options, std::ostream& text, ordered_json& json) {
+  RtabmapDatabase database(options.db);
+  const MapOutline& outline = database.outline();
+  const FloorPlan plan = floor_plan(database);
+  const std::vector<Path> paths = paths_of(outline);
+  const std::size_t linked = outline.nodes.size() - outline.unlinked();
+
+  Files files;
+  const bool with_map = !plan.image.cells.empty();
+  if (with_map) {
+    files.emplace_back("map.pgm", to_pgm(plan.image));
+    files.emplace_back("map.yaml", map_yaml(plan.image, "map.pgm"));
+    files.emplace_back("map.wld", world_file(plan.image));
+  }
+  files.emplace_back("signatures.geojson", signatures_geojson(outline));
+  files.emplace_back("trajectories.geojson", trajectories_geojson(paths));
+  write_together(options.out, files);
+
+  std::vector<std::string> warnings = outline.warnings;
+  warnings.insert(warnings.end(), plan.warnings.begin(), plan.warnings.end());
+  if (!with_map) {
+    warnings.push_back(
+        options.db.string() +
+        ": no local grids and no map of its own: no map.pgm; draw along the trajectories");
+  }
+  if (outline.unlinked() > 0) {
+    warnings.push_back(options.db.string() + ": " + std::to_string(outline.unlinked()) + " of " +
+                       std::to_string(outline.nodes.size()) +
+                       " signatures have no optimised pose and are not drawn");
+  }
+  text << options.out.string() << ": " << linked << " signatures, " << paths.size()
+       << (paths.size() == 1 ? " trajectory" : " trajectories");
+  if (with_map) {
+    text << ", a map of " << plan.image.width << " x " << plan.image.height << " cells of "
+         << plan.image.resolution_m << " m from " << plan.source;
+  }
+  text << "\n";
+  for (const std::string& warning : warnings) text << "warning: " << warning << "\n";
+  print_next_step(options, with_map, text);
+
+  json["out"] = options.out.string();
+  json["files"] = ordered_json::array();
+  for (const auto& [name, content] : files) json["files"].push_back(name);
+  json["signatures"] = linked;
+  json["unlinked"] = outline.unlinked();
+  json["trajectories"] = paths.size();
+  json["map"] = to_json(plan);
+  json["warnings"] = warnings;
+}
+
+void add_outline_command(CLI::App& app, int& exit_code) {
+  struct Arguments {
+    OutlineOptions options;
+    JsonOutput json;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const command = app.add_subcommand(
+      "outline", "Write a floor plan, signatures and trajectories for drawing zones (QGIS)");
+  command->add_option("--db", arguments->options.db, "RTAB-Map database")
+      ->type_name("DB")
+      ->required();
+  command->add_option("--out", arguments->options.out, "folder for the files")
+      ->type_name("DIR")
+      ->required();
+  arguments->json.add_option(*command);
+  command->footer(
+      "Writes map.pgm and map.yaml (for ROS map_server: the database's own map, else assembled "
+      "from the\n"
+      "local grids), map.wld (for QGIS), signatures.geojson and trajectories.geojson, all in "
+      "metres of\n"
+      "the map frame. Files of an earlier run are replaced only when all are written.");
+  command->callback([arguments, &exit_code] {
+    ordered_json json;
+    write_outline(arguments->options, arguments->json.text(), json);
+    arguments->json.write(json);
+    exit_code = 0;
+  });
+}
+
+}  // namespace zonepack::packer

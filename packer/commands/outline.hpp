@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/App.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+namespace zonepack::packer {
+
+struct OutlineOptions {
+  std::filesystem::path db;
+  std::filesystem::path out;
+};
+
+// Writes what somebody needs to draw zones: map.pgm, map.yaml and map.wld (when the database holds
+// a map or local grids), signatures.geojson and trajectories.geojson. All files are written beside
+// their names first and renamed together at the end: after a failure the old ones stand. Throws
+// std::runtime_error.
+void write_outline(const OutlineOptions& options, std::ostream& text, nlohmann::ordered_json& json);
+
+// `zonepack outline --db DB --out DIR [--json FILE]`.
+void add_outline_command(CLI::App& app, int& exit_code);
+
+}  // namespace zonepack::packer
