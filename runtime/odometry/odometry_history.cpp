@@ -33,7 +33,7 @@ OdometryHistory::Entry& OdometryHistory::push(std::int64_t t_ns,
   } else {
     ++count_;
   }
-  back() = {t_ns, step, state, {}, false};
+  back() = {t_ns, step, state, {}, false, false};
   return back();
 }
 
@@ -67,6 +67,53 @@ UncertainPose OdometryHistory::carry(UncertainPose pose, std::uint64_t from,
                                      std::uint64_t to) const noexcept {
   for (std::uint64_t i = from; i < to; ++i) pose = compose(pose, at(i + 1).step);
   return pose;
+}
+
+void OdometryHistory::split(std::uint64_t index, std::int64_t t_ns) noexcept {
+  Entry first = at(index);
+  const std::int64_t begin_ns = at(index - 1).t_ns;
+  const double part =
+      static_cast<double>(t_ns - begin_ns) / static_cast<double>(first.t_ns - begin_ns);
+  const Pose2 whole = first.step.pose;
+  const Covariance2 noise = first.step.covariance;
+  push(back().t_ns, {});
+  for (std::uint64_t i = newest(); i > index; --i) at(i) = at(i - 1);
+  first.t_ns = t_ns;
+  first.has_fix = false;
+  first.step = {part_of_arc(whole, part), scaled(noise, part)};
+  first.state = compose(at(index - 1).state, first.step);
+  at(index) = first;
+  at(index + 1).step = {between(first.step.pose, whole), scaled(noise, 1 - part)};
+}
+
+std::uint64_t OdometryHistory::fill_drift(std::int64_t from_ns, std::int64_t to_ns,
+                                          const UncertainPose& motion) noexcept {
+  std::uint64_t first = newest() + 1;
+  while (first - 1 > oldest() && at(first - 1).drift) --first;
+  std::uint64_t before = first - 1;
+  if (full() && before == oldest()) from_ns = std::max(from_ns, at(before).t_ns);
+  const double length = static_cast<double>(to_ns - from_ns);
+  const auto part_at = [&](std::int64_t t_ns) {
+    return length <= 0 ? 0 : std::clamp(static_cast<double>(t_ns - from_ns) / length, 0.0, 1.0);
+  };
+  const auto piece = [&](double begin, double end) {
+    return UncertainPose{between(part_of_arc(motion.pose, begin), part_of_arc(motion.pose, end)),
+                         scaled(motion.covariance, end - begin)};
+  };
+  bool fixed = false;
+  for (std::uint64_t i = first; i <= newest(); ++i) fixed = fixed || at(i).has_fix;
+  double done = part_at(at(before).t_ns);
+  for (std::uint64_t i = first; i <= newest(); ++i) {
+    const double reached = part_at(at(i).t_ns);
+    const Covariance2 doubt = at(i).step.covariance;
+    at(i).step = piece(done, reached);
+    if (fixed) at(i).step.covariance = doubt;
+    at(i).drift = false;
+    done = reached;
+  }
+  if (full() && before == oldest()) ++before;
+  push(std::max(to_ns, back().t_ns), piece(done, 1));
+  return before;
 }
 
 void OdometryHistory::replay_from(std::uint64_t from) noexcept {

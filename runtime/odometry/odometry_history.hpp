@@ -21,6 +21,7 @@ class OdometryHistory {
     UncertainPose state;  // T_map_base at t_ns, fixes included
     UncertainPose fix;    // the fixes used here, if has_fix
     bool has_fix = false;
+    bool drift = false;  // the step is not known: odometry was missing
   };
 
   explicit OdometryHistory(std::size_t capacity);
@@ -49,6 +50,18 @@ class OdometryHistory {
 
   // A pose at entry `from`, carried along the steps to entry `to` (from <= to).
   UncertainPose carry(UncertainPose pose, std::uint64_t from, std::uint64_t to) const noexcept;
+
+  // Cuts the step to entry `index` in two at t_ns, between its ends: entry `index` is then at t_ns,
+  // and all from the old one on have numbers one higher. The oldest entry goes when full.
+  void split(std::uint64_t index, std::int64_t t_ns) noexcept;
+
+  // Spreads a motion that took from from_ns to to_ns, at constant speed, over the entries of
+  // missing odometry at the end, and adds an entry with what is left of it. Of a motion that began
+  // before the first of these entries only the part since then counts, unless the entries before
+  // were dropped for want of room. States are not replayed. Returns the entry before the first that
+  // changed.
+  std::uint64_t fill_drift(std::int64_t from_ns, std::int64_t to_ns,
+                           const UncertainPose& motion) noexcept;
 
   // States after entry `from` anew from its state, steps and fixes.
   void replay_from(std::uint64_t from) noexcept;

@@ -13,7 +13,8 @@ namespace {
 using Verdict = CorrectionVerdict;
 
 constexpr double kSecondsPerNs = 1e-9;
-constexpr double kDriftStep_s = 0.1;
+constexpr double kDriftStep_s = 0.1;   // how often missing odometry is counted in
+constexpr double kDriftEntry_s = 1.0;  // how much of it shares an entry of the history
 
 double square(double value) noexcept { return value * value; }
 
@@ -76,34 +77,72 @@ void PoseFilter::start_at(std::int64_t t_ns, const Pose2& T_map_base, double sig
   list_hypotheses();
 }
 
-// Adds a step to the history and to every place the robot may be.
-void PoseFilter::append(std::int64_t t_ns, const UncertainPose& step) noexcept {
-  const bool late = t_ns <= history_.back().t_ns;
-  bool open = late && !history_.back().has_fix && history_.newest() != history_.oldest();
-  if (!late && history_.newest() > history_.oldest()) {
-    const double apart = seconds_between(history_.at(history_.newest() - 1).t_ns, t_ns);
-    open = apart <= settings_.history_step_s && !history_.back().has_fix;
+// Whether a step may become part of the newest entry: short ones share it, and nothing hangs on it.
+bool PoseFilter::may_extend_newest(std::int64_t t_ns, bool drift) const noexcept {
+  if (history_.newest() == history_.oldest()) return false;
+  const OdometryHistory::Entry& last = history_.back();
+  if (last.has_fix || last.drift != drift) return false;
+  if (trusted_ && history_.newest() == valid_from_) return false;
+  for (std::size_t i = 0; i < candidate_count_; ++i) {
+    if (candidates_[i].anchor == history_.newest()) return false;
   }
-  if (trusted_ && history_.newest() == valid_from_) open = false;
+  const double longest = drift ? kDriftEntry_s : settings_.history_step_s;
+  return t_ns <= last.t_ns ||
+         seconds_between(history_.at(history_.newest() - 1).t_ns, t_ns) <= longest;
+}
+
+// Adds a step to the history and to every place the robot may be.
+void PoseFilter::append(std::int64_t t_ns, const UncertainPose& step, bool drift) noexcept {
   for (std::size_t i = 0; i < candidate_count_; ++i) {
     candidates_[i].now = compose(candidates_[i].now, step);
-    if (candidates_[i].anchor == history_.newest()) open = false;
-    // The oldest entry is about to go.
-    if (history_.full() && candidates_[i].anchor == history_.oldest()) {
-      candidates_[i].at_anchor =
-          history_.carry(candidates_[i].at_anchor, history_.oldest(), history_.oldest() + 1);
-      ++candidates_[i].anchor;
-    }
   }
-  if (open) {
+  if (may_extend_newest(t_ns, drift)) {
     OdometryHistory::Entry& last = history_.back();
     last.step = compose(last.step, step);
     last.state = compose(history_.at(history_.newest() - 1).state, last.step);
     last.t_ns = std::max(last.t_ns, t_ns);
-  } else {
-    history_.push(std::max(t_ns, history_.back().t_ns), step);
+    return;
   }
-  valid_from_ = std::max(valid_from_, history_.oldest());
+  make_room();
+  history_.push(std::max(t_ns, history_.back().t_ns), step).drift = drift;
+}
+
+// Before an entry is added: what hangs on the oldest one, which may go, moves on to the next.
+void PoseFilter::make_room() noexcept {
+  if (!history_.full()) return;
+  const std::uint64_t oldest = history_.oldest();
+  for (std::size_t i = 0; i < candidate_count_; ++i) {
+    Candidate& candidate = candidates_[i];
+    if (candidate.anchor != oldest) continue;
+    candidate.at_anchor = history_.carry(candidate.at_anchor, oldest, oldest + 1);
+    ++candidate.anchor;
+  }
+  valid_from_ = std::max(valid_from_, oldest + 1);
+}
+
+// A fix in a pause gets an entry of its own, so that it stays at its stamp when the motion is
+// known.
+void PoseFilter::split_drift(std::uint64_t index, std::int64_t t_ns) noexcept {
+  const OdometryHistory::Entry& entry = history_.at(index);
+  if (!entry.drift || entry.t_ns == t_ns || index <= history_.oldest() + 1) return;
+  if (trusted_ && index == valid_from_) return;
+  make_room();
+  history_.split(index, t_ns);
+  for (std::size_t i = 0; i < candidate_count_; ++i) {
+    if (candidates_[i].anchor >= index) ++candidates_[i].anchor;
+  }
+}
+
+// Odometry is back with the motion since it went missing.
+void PoseFilter::bridge_pause(const OdometryIncrement& increment) noexcept {
+  make_room();
+  const std::uint64_t before =
+      history_.fill_drift(increment.from_ns, increment.to_ns, increment.motion);
+  history_.replay_from(trusted_ ? std::max(before, valid_from_) : before);
+  for (std::size_t i = 0; i < candidate_count_; ++i) {
+    Candidate& candidate = candidates_[i];
+    candidate.now = history_.carry(candidate.at_anchor, candidate.anchor, history_.newest());
+  }
 }
 
 void PoseFilter::predict(const OdometryIncrement& increment) noexcept {
@@ -120,11 +159,17 @@ void PoseFilter::predict(const OdometryIncrement& increment) noexcept {
       candidates_[i].at_anchor = candidates_[i].now;
     }
   }
-  append(increment.to_ns, increment.motion);
+  if (history_.back().drift && increment.to_ns > increment.from_ns) {
+    bridge_pause(increment);
+  } else {
+    append(increment.to_ns, increment.motion, false);
+  }
   const double seconds = std::max(seconds_between(increment.from_ns, increment.to_ns), 0.0);
   const double weight = seconds / (settings_.speed_filter_s + seconds);
   speed_m_s_ += (increment.speed_m_s - speed_m_s_) * weight;
   yaw_rate_rad_s_ += (increment.yaw_rate_rad_s - yaw_rate_rad_s_) * weight;
+  lost_speed_m_s_ = speed_m_s_;
+  lost_yaw_rate_rad_s_ = yaw_rate_rad_s_;
   list_hypotheses();
 }
 
@@ -134,9 +179,13 @@ void PoseFilter::drift_until(std::int64_t now_ns) noexcept {
   if (history_.empty()) return;
   const double seconds = seconds_between(history_.back().t_ns, now_ns);
   if (seconds < kDriftStep_s) return;
-  const double root = std::sqrt(seconds);
-  append(now_ns, uncertain({}, settings_.drift_sigma_m_per_sqrt_s * root,
-                           settings_.drift_sigma_rad_per_sqrt_s * root));
+  const auto sigma = [seconds](double standing, double moving) {
+    return std::sqrt((square(standing) + square(moving)) * seconds);
+  };
+  append(now_ns,
+         uncertain({}, sigma(settings_.drift_sigma_m_per_sqrt_s, lost_speed_m_s_),
+                   sigma(settings_.drift_sigma_rad_per_sqrt_s, lost_yaw_rate_rad_s_)),
+         true);
   list_hypotheses();
 }
 
@@ -189,6 +238,7 @@ CorrectionVerdict PoseFilter::correct(const PoseCorrection& fix, std::int64_t no
     const std::optional<std::uint64_t> found = history_.find(fix.stamp_ns);
     if (!found || (trusted_ && *found < valid_from_)) return count(Verdict::kTooOld);
     index = *found;
+    split_drift(index, fix.stamp_ns);
     z = history_.carry_to_entry(z, fix.stamp_ns, index);
   }
   const Verdict verdict = trusted_ ? place(z, index) : support(z, index);

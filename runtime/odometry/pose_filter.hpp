@@ -112,7 +112,11 @@ class PoseFilter {
   bool is_plausible(const PoseCorrection& fix) const noexcept;
   UncertainPose measured(const PoseCorrection& fix) const noexcept;
   UncertainPose motion_since_newest(double seconds) const noexcept;
-  void append(std::int64_t t_ns, const UncertainPose& step) noexcept;
+  void append(std::int64_t t_ns, const UncertainPose& step, bool drift) noexcept;
+  bool may_extend_newest(std::int64_t t_ns, bool drift) const noexcept;
+  void make_room() noexcept;
+  void split_drift(std::uint64_t index, std::int64_t t_ns) noexcept;
+  void bridge_pause(const OdometryIncrement& increment) noexcept;
   CorrectionVerdict count(CorrectionVerdict verdict) noexcept;
   CorrectionVerdict place(const UncertainPose& fix, std::uint64_t index) noexcept;
   CorrectionVerdict support(const UncertainPose& fix, std::uint64_t index) noexcept;
@@ -132,6 +136,8 @@ class PoseFilter {
   std::size_t hypothesis_count_ = 0;
   double speed_m_s_ = 0;
   double yaw_rate_rad_s_ = 0;
+  double lost_speed_m_s_ = 0;  // when odometry was last fresh
+  double lost_yaw_rate_rad_s_ = 0;
   PoseFilterCounters counters_;
 };
 

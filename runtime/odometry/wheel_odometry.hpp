@@ -30,7 +30,7 @@ struct WheelOdometrySettings {
   double gap_s = 0.5;                 // a longer pause between samples is a gap
   double timeout_s = 0.3;             // without a sample for so long, odometry is stale
   // Standard deviations of what the wheels do not tell: slip, wrong radius and track, uneven floor.
-  double sigma_forward_per_sqrt_m = 0.01;
+  double sigma_forward_per_sqrt_m = 0.015;
   double sigma_sideways_per_sqrt_m = 0.005;
   double sigma_yaw_per_sqrt_m = 0.005;
   double sigma_forward_per_sqrt_rad = 0.005;

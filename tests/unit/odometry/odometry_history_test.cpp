@@ -64,6 +64,57 @@ TEST(OdometryHistory, CarriesAPoseFromTheMiddleOfAStep) {
   EXPECT_EQ(history.carry_to_entry(quarter, 10, history.newest()).pose, quarter.pose);
 }
 
+TEST(OdometryHistory, CutsAStepInTwo) {
+  OdometryHistory history(8);
+  history.restart(0);
+  history.push(10, ahead(1));
+  history.push(20, ahead(4)).drift = true;
+  history.back().has_fix = true;
+  history.push(30, ahead(1));
+  const std::uint64_t cut = *history.find(12);
+  const UncertainPose end = history.back().state;
+  history.split(cut, 12);
+  EXPECT_EQ(history.at(cut).t_ns, 12);
+  EXPECT_NEAR(history.at(cut).step.pose.x_m, 0.8, 1e-12);
+  EXPECT_NEAR(history.at(cut).state.pose.x_m, 1.8, 1e-12);
+  EXPECT_FALSE(history.at(cut).has_fix);
+  EXPECT_EQ(history.at(cut + 1).t_ns, 20);
+  EXPECT_NEAR(history.at(cut + 1).step.pose.x_m, 3.2, 1e-12);
+  EXPECT_TRUE(history.at(cut + 1).has_fix && history.at(cut + 1).drift);
+  EXPECT_EQ(history.newest(), cut + 2);
+  EXPECT_EQ(history.back().t_ns, 30);
+  EXPECT_EQ(history.back().state.pose, end.pose);
+}
+
+TEST(OdometryHistory, SpreadsTheMotionOfAPauseOverItsEntries) {
+  OdometryHistory history(8);
+  history.restart(0);
+  history.push(10, ahead(1));
+  history.push(20, {}).drift = true;
+  history.push(30, {}).drift = true;
+  // 3 m from 10 to 40: a metre for each entry, and one more for the rest.
+  const std::uint64_t before = history.fill_drift(10, 40, ahead(3));
+  EXPECT_EQ(history.at(before).t_ns, 10);
+  history.replay_from(before);
+  EXPECT_EQ(history.back().t_ns, 40);
+  for (std::uint64_t i = history.oldest() + 1; i <= history.newest(); ++i) {
+    EXPECT_NEAR(history.at(i).step.pose.x_m, 1, 1e-12);
+    EXPECT_NEAR(history.at(i).step.covariance.xx, 1e-4, 1e-12);
+    EXPECT_FALSE(history.at(i).drift);
+  }
+  EXPECT_NEAR(history.back().state.pose.x_m, 4, 1e-12);
+}
+
+TEST(OdometryHistory, TheWholeMotionCountsWhenTheStartOfAPauseWasDropped) {
+  OdometryHistory history(3);
+  history.restart(0);
+  for (int t = 10; t <= 50; t += 10) history.push(t, {}).drift = true;
+  const double before = history.back().state.pose.x_m;
+  history.replay_from(history.fill_drift(0, 60, ahead(6)));
+  EXPECT_NEAR(history.at(history.oldest()).step.pose.x_m + history.back().step.pose.x_m, 4, 1e-12);
+  EXPECT_NEAR(history.back().state.pose.x_m - before, 6 * 2 / 3.0, 1e-12);
+}
+
 TEST(OdometryHistory, ReplaysStepsAndFixes) {
   OdometryHistory history(8);
   history.restart(0);

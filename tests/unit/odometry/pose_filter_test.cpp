@@ -319,6 +319,7 @@ TEST(PoseFilter, WithoutFixesTheUncertaintyGrowsAndAFixIsTakenBack) {
 TEST(PoseFilter, StaleOdometryGrowsUncertaintyAndLetsTheRobotBeFoundElsewhere) {
   Drive drive;
   drive.trust();
+  for (int i = 0; i < 100; ++i) drive.step(0, 0);
   std::int64_t now = drive.now();
   for (int i = 0; i < 1000; ++i) drive.filter.drift_until(now += 10 * kMs);
   const PoseEstimate estimate = drive.filter.estimate(now);
@@ -328,15 +329,41 @@ TEST(PoseFilter, StaleOdometryGrowsUncertaintyAndLetsTheRobotBeFoundElsewhere) {
   PoseCorrection fix = drive.fix(drive.now(), 1.5, 0, 0);
   fix.stamp_ns = now - 100 * kMs;
   EXPECT_EQ(drive.filter.correct(fix, now), Verdict::kUsed);
-  // Odometry comes back and covers the whole pause.
-  OdometryIncrement increment;
-  increment.from_ns = drive.now();
-  increment.to_ns = now - 5 * kMs;
-  increment.motion.pose = {1, 0, 0};
-  const Pose2 before = drive.filter.estimate(now).T_map_base;
-  drive.filter.predict(increment);
-  const Pose2 moved = between(before, drive.filter.estimate(now).T_map_base);
-  EXPECT_NEAR(moved.x_m, 1, 1e-9);
+}
+
+TEST(PoseFilter, ARobotThatMovedWhenOdometryWentMissingMayBeFarther) {
+  Drive drive;
+  drive.trust();
+  for (int i = 0; i < 100; ++i) drive.step(0.02, 0);  // 1 m/s
+  const double before = position_sigma_m(drive.filter.estimate(drive.now()).covariance);
+  drive.filter.drift_until(drive.now() + 1000 * kMs);
+  const PoseEstimate estimate = drive.filter.estimate(drive.now() + 1000 * kMs);
+  EXPECT_NEAR(position_sigma_m(estimate.covariance), std::sqrt(1 + 0.09 + before * before), 0.01);
+}
+
+// Wheel positions tell after a pause how far the robot went in it; fixes from the pause count, too.
+TEST(PoseFilter, TheMotionOfAPauseIsPutWhereItBelongs) {
+  for (const bool with_fix : {false, true}) {
+    Drive drive;
+    drive.trust();
+    OdometryIncrement pause;
+    pause.from_ns = drive.now();
+    pause.motion.pose = along_arc(4 * 0.02 * 50, 4 * 0.01 * 50);
+    pause.motion.covariance.xx = pause.motion.covariance.yy = 0.5;
+    pause.motion.covariance.yaw_yaw = 0.01;
+    for (int i = 1; i <= 200; ++i) {  // 4 s
+      drive.truth.push_back(compose(drive.truth.back(), along_arc(0.02, 0.01)));
+      drive.filter.drift_until(drive.now());
+      if (with_fix && i % 50 == 0) {
+        EXPECT_EQ(drive.correct(drive.now() - 140 * kMs), Verdict::kUsed) << i;
+      }
+    }
+    pause.to_ns = drive.now();
+    drive.filter.predict(pause);
+    EXPECT_LT(drive.error_m(), 1e-6);
+    const double sigma = position_sigma_m(drive.filter.estimate(drive.now()).covariance);
+    EXPECT_EQ(sigma < 0.5, with_fix) << sigma;
+  }
 }
 
 TEST(PoseFilter, TheEstimateIsCarriedOnToNow) {
