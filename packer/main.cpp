@@ -5,6 +5,8 @@
 #include <iostream>
 
 #include "packer/commands/build.hpp"
+#include "packer/commands/export.hpp"
+#include "packer/commands/plan.hpp"
 #include "packer/commands/report.hpp"
 
 int main(int argc, char** argv) {
@@ -16,6 +18,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = 0;
   zonepack::packer::add_build_command(app, exit_code);
+  zonepack::packer::add_export_command(app, exit_code);
+  zonepack::packer::add_plan_command(app, exit_code);
   zonepack::packer::add_report_command(app, exit_code);
   try {
     app.parse(argc, argv);

@@ -28,12 +28,14 @@ Result<PackReader> PackReader::open(const std::string& path, const Digest32* exp
   return reader;
 }
 
-Result<DecodedPack> DecodedPack::decode(const PackReader& pack, PayloadMask wanted) {
+Result<DecodedPack> DecodedPack::decode(const PackReader& pack, PayloadMask wanted,
+                                        OrdinalRange range) {
   DecodedPack decoded;
   const PayloadMask mask = payload_closure(wanted, pack.index().grid_needs_scan());
   std::vector<std::byte> stored;
   for (const fb::ChunkEntry* entry : *pack.index().chunks()) {
     if ((mask & mask_of(entry->kind())) == 0) continue;
+    if (entry->last_signature() < range.first || range.last < entry->first_signature()) continue;
     stored.resize(entry->stored_size());
     if (const auto read = pack.file().read_at(entry->offset(), stored); !read) return read.error();
     std::vector<Line>& memory = decoded.memory_.emplace_back((entry->decoded_size() + 63) / 64);
@@ -41,7 +43,7 @@ Result<DecodedPack> DecodedPack::decode(const PackReader& pack, PayloadMask want
     if (!chunk) return chunk.error();
     decoded.chunks_.push_back({entry->kind(), *chunk});
   }
-  Result<ZoneView> view = ZoneView::make(decoded.chunks_);
+  Result<ZoneView> view = ZoneView::make(decoded.chunks_, range);
   if (!view) return view.error();
   decoded.view_ = std::make_unique<ZoneView>(std::move(*view));
   return decoded;

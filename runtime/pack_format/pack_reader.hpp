@@ -37,7 +37,9 @@ class PackReader {
 class DecodedPack {
  public:
   // Errors: those of reading and decoding, and kMismatch of ZoneView; detail is the file offset.
-  static Result<DecodedPack> decode(const PackReader& pack, PayloadMask wanted);
+  // Only chunks that hold something of the range are decoded.
+  static Result<DecodedPack> decode(const PackReader& pack, PayloadMask wanted,
+                                    OrdinalRange range = {});
 
   const ZoneView& view() const noexcept { return *view_; }
   const std::vector<ChunkRef>& chunks() const noexcept { return chunks_; }

@@ -22,8 +22,9 @@ bool rows_are_complete(std::span<const RecordView> records) {
 
 }  // namespace
 
-Result<ZoneView> ZoneView::make(std::span<const ChunkRef> chunks) {
+Result<ZoneView> ZoneView::make(std::span<const ChunkRef> chunks, OrdinalRange range) {
   ZoneView view;
+  view.first_ = range.first;
   std::vector<std::pair<std::uint32_t, Core>> cores;
   for (const ChunkRef& ref : chunks) {
     if (ref.kind == fb::PayloadKind::Core) {
@@ -33,12 +34,13 @@ Result<ZoneView> ZoneView::make(std::span<const ChunkRef> chunks) {
       for (const fb::Signature* signature : *chunk->signatures()) {
         if (!first && !signature->continued()) ++ordinal;
         first = false;
-        cores.push_back({ordinal, {chunk, signature, {}}});
+        if (range.contains(ordinal)) cores.push_back({ordinal, {chunk, signature, {}}});
       }
     } else {
       const fb::BulkChunk* const chunk = fb::GetBulkChunk(ref.bytes.data());
       for (std::uint32_t i = 0; i < chunk->records()->size(); ++i) {
-        view.records_.emplace_back(*chunk, i);
+        const RecordView record(*chunk, i);
+        if (range.contains(record.signature())) view.records_.push_back(record);
       }
     }
   }
@@ -48,14 +50,14 @@ Result<ZoneView> ZoneView::make(std::span<const ChunkRef> chunks) {
   });
   for (auto& [ordinal, core] : cores) {
     if (core.signature->continued()) {
-      if (view.core_.empty() || ordinal + 1 != view.core_.size()) {
+      if (view.core_.empty() || ordinal + 1 != range.first + view.core_.size()) {
         return {ErrorCode::kMismatch, ordinal};
       }
       view.core_.back().more_links.push_back({core.chunk, core.signature});
       continue;
     }
-    if (ordinal != view.core_.size() ||
-        (ordinal > 0 && view.core_.back().signature->id() >= core.signature->id())) {
+    if (ordinal != range.first + view.core_.size() ||
+        (!view.core_.empty() && view.core_.back().signature->id() >= core.signature->id())) {
       return {ErrorCode::kMismatch, ordinal};
     }
     view.core_.push_back(std::move(core));
@@ -70,10 +72,11 @@ Result<ZoneView> ZoneView::make(std::span<const ChunkRef> chunks) {
     std::size_t end = begin + 1;
     while (end < all.size() && table_key(all[end]) == table_key(all[begin])) ++end;
     const auto records = all.subspan(begin, end - begin);
-    if (records[0].signature() >= view.size() || !rows_are_complete(records)) {
+    const std::uint32_t place = records[0].signature() - range.first;
+    if (place >= view.size() || !rows_are_complete(records)) {
       return {ErrorCode::kMismatch, records[0].signature()};
     }
-    while (view.first_table_.size() <= records[0].signature()) {
+    while (view.first_table_.size() <= place) {
       view.first_table_.push_back(view.tables_.size());
     }
     view.tables_.emplace_back(records);

@@ -16,6 +16,15 @@ struct ChunkRef {
   ByteSpan bytes;
 };
 
+// Some signatures of a zone that follow each other; both ends belong to it.
+struct OrdinalRange {
+  std::uint32_t first = 0;
+  std::uint32_t last = 0xFFFFFFFFu;
+  bool contains(std::uint32_t ordinal) const noexcept {
+    return first <= ordinal && ordinal <= last;
+  }
+};
+
 // One table of a signature (its features, its scan …) across the records that hold its rows.
 class TableView {
  public:
@@ -37,8 +46,9 @@ class TableView {
 class ZoneView {
  public:
   // Refuses tables whose records leave out, repeat or contradict rows (kMismatch; detail: the
-  // ordinal), signatures without a core record, and ids out of order.
-  static Result<ZoneView> make(std::span<const ChunkRef> chunks);
+  // ordinal), signatures without a core record, and ids out of order. With a range, the view holds
+  // its signatures only, and the chunks need not hold others whole.
+  static Result<ZoneView> make(std::span<const ChunkRef> chunks, OrdinalRange range = {});
 
   std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(core_.size()); }
 
@@ -52,16 +62,17 @@ class ZoneView {
     const fb::Signature* signature;
     std::vector<More> more_links;  // entries that continue it
   };
-  const Core& core(std::uint32_t ordinal) const noexcept { return core_[ordinal]; }
+  const Core& core(std::uint32_t ordinal) const noexcept { return core_[ordinal - first_]; }
 
   // All tables of a signature, by part, then ordinal.
   std::span<const TableView> tables(std::uint32_t ordinal) const noexcept {
-    return {tables_.data() + first_table_[ordinal],
-            first_table_[ordinal + 1] - first_table_[ordinal]};
+    const std::size_t* const table = &first_table_[ordinal - first_];
+    return {tables_.data() + table[0], table[1] - table[0]};
   }
   const TableView* table(std::uint32_t ordinal, fb::Part part) const noexcept;
 
  private:
+  std::uint32_t first_ = 0;  // ordinal of core_[0]
   std::vector<Core> core_;
   std::vector<RecordView> records_;  // by signature, part, ordinal, first row
   std::vector<TableView> tables_;

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/commands/plan.hpp"
+
+#include <iomanip>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "packer/commands/command_line.hpp"
+#include "packer/decode/map_reader.hpp"
+#include "packer/plan/map_plan.hpp"
+#include "runtime/report/format.hpp"
+
+namespace zonepack::packer {
+namespace {
+
+constexpr char kFormulas[] =
+    "smallest budget    = fixed + (pinned + largest pair of neighbours) x slot\n"
+    "live change of map = smallest budget + fixed + largest zone x slot\n"
+    "where slot is a slot with its tables, and fixed are tables, manifest, zone graph and read\n"
+    "buffers. While a map changes, both maps' tables stand, and the robot's zone of the new map "
+    "is\n"
+    "loaded beside the pair of the old one; the new map is taken to be as large as this one.\n"
+    "Exit code 1 when --budget is below the smallest.";
+
+struct Arguments {
+  std::string folder;
+  ByteCount budget = 0;
+  PayloadMask payload = kDefaultPayload;
+  std::vector<std::string> pins;
+  JsonOutput json;
+};
+
+std::string in_bytes(ByteCount bytes) {
+  return std::to_string(bytes) + " bytes (" + report::format_bytes(static_cast<double>(bytes)) +
+         ")";
+}
+
+std::string pair_text(const MapPlan& plan, ZoneId a, ZoneId b) {
+  if (a == kNoZone) return "no zone";
+  if (b == kNoZone) return plan.zones[a].name + " alone";
+  return plan.zones[a].name + " with " + plan.zones[b].name;
+}
+
+nlohmann::ordered_json names(const MapPlan& plan, const std::vector<ZoneId>& zones) {
+  auto list = nlohmann::ordered_json::array();
+  for (const ZoneId zone : zones) list.push_back(plan.zones[zone].name);
+  return list;
+}
+
+nlohmann::ordered_json to_json(const MapPlan& plan, const Arguments& arguments) {
+  nlohmann::ordered_json json;
+  json["map"] = arguments.folder;
+  json["payload"] = payload_text(plan.payload);
+  json["smallest_budget_bytes"] = plan.smallest.bytes;
+  json["smallest_budget_slots"] = plan.smallest.slots;
+  std::vector<ZoneId> pair;
+  for (const ZoneId zone : {plan.smallest.zone_a, plan.smallest.zone_b}) {
+    if (zone != kNoZone) pair.push_back(zone);
+  }
+  json["pair"] = names(plan, pair);
+  json["live_change_budget_bytes"] = plan.live_change_bytes;
+  json["fixed_bytes"] = plan.fixed_bytes;
+  json["slot_bytes"] = kSlotBytes;
+  json["table_bytes_per_slot"] = kTableBytesPerSlot;
+  json["zones"] = nlohmann::ordered_json::array();
+  for (const PlanZone& zone : plan.zones) {
+    json["zones"].push_back({{"name", zone.name},
+                             {"signatures", zone.signatures},
+                             {"slots", zone.slots},
+                             {"charged_bytes", zone.charged_bytes},
+                             {"stored_bytes", zone.stored_bytes},
+                             {"pinned", zone.pinned}});
+  }
+  if (!plan.budget) return json;
+  const BudgetPlan& b = *plan.budget;
+  nlohmann::ordered_json& budget = json["budget"];
+  budget["bytes"] = b.bytes;
+  budget["suffices"] = b.suffices;
+  budget["slots"] = b.slots;
+  budget["largest_zones_at_once"] = b.largest_zones_at_once;
+  budget["whole_map"] = b.whole_map;
+  budget["zones_without_room"] = names(plan, b.zones_without_room);
+  budget["pairs_without_room"] = nlohmann::ordered_json::array();
+  for (const auto& [a, c] : b.pairs_without_room) {
+    budget["pairs_without_room"].push_back(names(plan, {a, c}));
+  }
+  return json;
+}
+
+void print(const BudgetPlan& b, const MapPlan& plan, std::ostream& out) {
+  out << "budget " << in_bytes(b.bytes) << ": " << b.slots << " slots\n";
+  if (!b.suffices) {
+    out << "  BELOW THE SMALLEST by " << plan.smallest.bytes - b.bytes
+        << " bytes: the robot would refuse to start\n";
+  }
+  for (const ZoneId zone : b.zones_without_room) {
+    out << "  zone " << plan.zones[zone].name << " does not fit\n";
+  }
+  for (const auto& [a, c] : b.pairs_without_room) {
+    out << "  zones " << plan.zones[a].name << " and " << plan.zones[c].name
+        << " do not fit together\n";
+  }
+  if (b.whole_map) {
+    out << "  holds the whole map: nothing is ever unloaded\n";
+  } else {
+    out << "  holds any " << b.largest_zones_at_once << " zones at once\n";
+  }
+}
+
+void print(const MapPlan& plan, std::ostream& out) {
+  std::size_t width = 4;
+  for (const PlanZone& zone : plan.zones) width = std::max(width, zone.name.size());
+  const auto row = [&](const std::string& name, const auto& signatures, const auto& charged,
+                       const auto& stored) {
+    out << std::left << std::setw(static_cast<int>(width)) << name << std::right << std::setw(12)
+        << signatures << std::setw(15) << charged << std::setw(14) << stored;
+  };
+  row("zone", "signatures", "charged bytes", "stored bytes");
+  out << "\n";
+  std::uint64_t signatures = 0, charged = 0, stored = 0;
+  for (const PlanZone& zone : plan.zones) {
+    row(zone.name, zone.signatures, zone.charged_bytes, zone.stored_bytes);
+    out << (zone.pinned ? "  pinned\n" : "\n");
+    signatures += zone.signatures;
+    charged += zone.charged_bytes;
+    stored += zone.stored_bytes;
+  }
+  row("all", signatures, charged, stored);
+  const std::string payload = payload_text(plan.payload);
+  out << "\nloaded: core" << (payload.empty() ? "" : "," + payload) << "\nfixed "
+      << in_bytes(plan.fixed_bytes) << "\nsmallest budget " << in_bytes(plan.smallest.bytes) << ", "
+      << plan.smallest.slots << " slots, set by "
+      << pair_text(plan, plan.smallest.zone_a, plan.smallest.zone_b) << "\nto change maps live "
+      << in_bytes(plan.live_change_bytes) << "\n";
+  if (plan.budget) print(*plan.budget, plan, out);
+}
+
+}  // namespace
+
+void add_plan_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const command =
+      app.add_subcommand("plan", "Tell what a map costs in memory, and what a budget allows");
+  command->footer(kFormulas);
+  command->add_option("DIR", arguments->folder, "folder of the map")->required();
+  CLI::Option* const budget =
+      add_size_option(*command, "--budget", arguments->budget, "tell what this budget allows");
+  CLI::Option* const payload =
+      add_payload_option(*command, "--payload", arguments->payload,
+                         "what to load beside the core; default features,scan,grid");
+  command->add_option("--pin", arguments->pins, "a zone that is always held; repeatable")
+      ->type_name("ZONE")
+      ->take_all()
+      ->allow_extra_args(false);
+  arguments->json.add_option(*command);
+  command->callback([arguments, budget, payload, &exit_code] {
+    const MapReader map(arguments->folder);
+    const PayloadMask packed = map.manifest().payload_mask();
+    std::ostream& text = arguments->json.text();
+    const PayloadMask missing = arguments->payload & ~packed;
+    if (payload->count() > 0 && missing != 0) {
+      text << "note: this map holds no " << payload_text(missing) << "\n";
+    }
+    std::vector<ZoneId> pinned;
+    for (const std::string& pin : arguments->pins) {
+      for (const ZoneId zone : map.zones_named(pin)) pinned.push_back(zone);
+    }
+    const MapPlan plan =
+        plan_map(map.manifest(), arguments->payload & packed, pinned,
+                 budget->count() > 0 ? std::optional(arguments->budget) : std::nullopt);
+    print(plan, text);
+    arguments->json.write(to_json(plan, *arguments));
+    exit_code = plan.budget && !plan.budget->suffices ? 1 : 0;
+  });
+}
+
+}  // namespace zonepack::packer

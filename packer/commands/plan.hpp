@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace zonepack::packer {
+
+// `zonepack plan DIR`: what a map costs in memory and what a budget allows; exit code 1 when the
+// budget given is below the smallest.
+void add_plan_command(CLI::App& app, int& exit_code);
+
+}  // namespace zonepack::packer

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/decode/map_reader.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+namespace zonepack::packer {
+
+void MapReader::fail(const std::string& path, const Error& error) {
+  std::string text = path + ": ";
+  switch (error.code) {
+    case ErrorCode::kNotFound:
+      text += "not found; give the folder of a map that 'zonepack build' wrote whole";
+      break;
+    case ErrorCode::kIo:
+      text += std::string("cannot be read: ") + std::strerror(static_cast<int>(error.detail));
+      break;
+    case ErrorCode::kBadVersion:
+      text += "format version " + std::to_string(error.detail) +
+              " is not known here; use the zonepack that wrote it, or build the map anew";
+      break;
+    default:
+      text += std::string(to_string(error.code)) + " (" + std::to_string(error.detail) +
+              "); 'zonepack verify' tells what is damaged, 'zonepack build' makes it anew";
+  }
+  throw std::runtime_error(text);
+}
+
+MapReader::MapReader(std::filesystem::path folder) : folder_(std::move(folder)) {
+  const std::string path = (folder_ / kManifestName).string();
+  Result<std::vector<std::byte>> file =
+      read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail));
+  if (!file) fail(path, file.error());
+  file_ = std::move(*file);
+  const Result<const fb::Manifest*> checked = check_manifest(file_);
+  if (!checked) fail(path, checked.error());
+  manifest_ = *checked;
+}
+
+std::vector<ZoneId> MapReader::zones_named(const std::string& name) const {
+  const auto& zones = *manifest_->zones();
+  std::vector<ZoneId> named;
+  std::string known;
+  for (ZoneId id = 0; id < zones.size(); ++id) {
+    const fb::Zone& zone = *zones.Get(id);
+    const bool is_part = zone.parent() != nullptr && zone.parent()->string_view() == name;
+    if (is_part || zone.name()->string_view() == name) named.push_back(id);
+    known += (known.empty() ? "" : ", ") + zone.name()->str();
+  }
+  if (!named.empty()) return named;
+  throw std::runtime_error(folder_.string() + ": no zone '" + name + "' in this map; it has " +
+                           (known.empty() ? "none" : known));
+}
+
+std::string MapReader::pack_path(const fb::Zone& zone) const {
+  return (folder_ / zone.pack()->str()).string();
+}
+
+PackReader MapReader::open_pack(const fb::Zone& zone) const {
+  Digest32 digest;
+  std::copy(zone.pack_digest()->begin(), zone.pack_digest()->end(), digest.begin());
+  Result<PackReader> pack = PackReader::open(pack_path(zone), &digest);
+  if (!pack) fail(pack_path(zone), pack.error());
+  if (pack->index().signatures() != zone.signatures()) {
+    fail(pack_path(zone), {ErrorCode::kMismatch, pack->index().signatures()});
+  }
+  return std::move(*pack);
+}
+
+}  // namespace zonepack::packer

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/export/json_lines.hpp"
+
+#include <charconv>
+#include <cmath>
+
+namespace zonepack::packer {
+namespace {
+
+constexpr std::size_t kLongestNumber = 32;
+
+// How many bytes from `at` are one character of well-formed UTF-8; 0 for none (RFC 3629).
+std::size_t utf8_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) {
+    return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0u;
+  };
+  const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0u) == 0x80u; };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  if (lead >= 0xC2 && lead <= 0xDF) return follows(1) ? 2 : 0;
+  if (lead >= 0xE0 && lead <= 0xEF) {
+    const bool overlong = lead == 0xE0 && byte(1) < 0xA0;
+    const bool surrogate = lead == 0xED && byte(1) > 0x9F;
+    return follows(1) && follows(2) && !overlong && !surrogate ? 3 : 0;
+  }
+  if (lead >= 0xF0 && lead <= 0xF4) {
+    const bool overlong = lead == 0xF0 && byte(1) < 0x90;
+    const bool too_large = lead == 0xF4 && byte(1) > 0x8F;
+    return follows(1) && follows(2) && follows(3) && !overlong && !too_large ? 4 : 0;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void JsonLines::separate() {
+  if (!first_) waiting_ += ',';
+  first_ = false;
+}
+
+void JsonLines::open(char bracket) {
+  separate();
+  waiting_ += bracket;
+  first_ = true;
+}
+
+void JsonLines::close(char bracket) {
+  waiting_ += bracket;
+  first_ = false;
+}
+
+void JsonLines::key(std::string_view name) {
+  separate();
+  quoted(name);
+  waiting_ += ':';
+  first_ = true;
+}
+
+void JsonLines::number(double value) {
+  if (std::isnan(value)) return text("nan");
+  if (std::isinf(value)) return text(value > 0 ? "inf" : "-inf");
+  separate();
+  if (value == 0 && std::signbit(value)) {
+    waiting_ += "-0.0";
+    return;
+  }
+  char digits[kLongestNumber];
+  const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
+  waiting_.append(digits, end);
+}
+
+void JsonLines::integer(std::int64_t value) {
+  separate();
+  char digits[kLongestNumber];
+  const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
+  waiting_.append(digits, end);
+}
+
+void JsonLines::text(std::string_view value) {
+  separate();
+  quoted(value);
+}
+
+void JsonLines::null() {
+  separate();
+  waiting_ += "null";
+}
+
+void JsonLines::quoted(std::string_view value) {
+  constexpr char kHex[] = "0123456789abcdef";
+  waiting_ += '"';
+  for (std::size_t at = 0; at < value.size();) {
+    const std::size_t length = utf8_length(value, at);
+    const char c = value[at];
+    if (length == 0) {
+      waiting_ += "\\ufffd";
+    } else if (c == '"' || c == '\\') {
+      waiting_ += '\\';
+      waiting_ += c;
+    } else if (length == 1 && static_cast<unsigned char>(c) < 0x20) {
+      waiting_ += "\\u00";
+      waiting_ += kHex[c >> 4];
+      waiting_ += kHex[c & 15];
+    } else {
+      waiting_.append(value, at, length);
+    }
+    at += length == 0 ? 1 : length;
+  }
+  waiting_ += '"';
+}
+
+void JsonLines::base64(std::span<const std::byte> bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  separate();
+  waiting_ += '"';
+  const std::size_t begin = waiting_.size();
+  waiting_.resize(begin + (bytes.size() + 2) / 3 * 4, '=');
+  char* out = waiting_.data() + begin;
+  const auto byte = [&](std::size_t i) {
+    return i < bytes.size() ? std::to_integer<unsigned>(bytes[i]) : 0u;
+  };
+  for (std::size_t i = 0; i < bytes.size(); i += 3, out += 4) {
+    const unsigned group = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+    out[0] = kDigits[group >> 18];
+    out[1] = kDigits[group >> 12 & 63];
+    if (i + 1 < bytes.size()) out[2] = kDigits[group >> 6 & 63];
+    if (i + 2 < bytes.size()) out[3] = kDigits[group & 63];
+  }
+  waiting_ += '"';
+}
+
+void JsonLines::end_line() {
+  waiting_ += '\n';
+  first_ = true;
+  if (waiting_.size() >= kPieceBytes) flush();
+}
+
+void JsonLines::flush() {
+  sink_(waiting_);
+  waiting_.clear();
+}
+
+}  // namespace zonepack::packer

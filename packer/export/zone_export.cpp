@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/export/zone_export.hpp"
+
+#include <stdexcept>
+#include <vector>
+
+#include "packer/decode/record_decoder.hpp"
+#include "packer/export/signature_json.hpp"
+
+namespace zonepack::packer {
+namespace {
+
+// Runs of signatures whose chunks are about kWindowBytes long.
+std::vector<OrdinalRange> windows_of(const fb::PackIndex& index) {
+  std::vector<std::uint64_t> bytes(index.signatures());
+  for (const fb::ChunkEntry* entry : *index.chunks()) {
+    bytes[entry->first_signature()] += entry->decoded_size();
+  }
+  std::vector<OrdinalRange> windows;
+  std::uint64_t sum = 0;
+  for (std::uint32_t i = 0; i < index.signatures(); ++i) {
+    if (windows.empty() || sum + bytes[i] > kWindowBytes) {
+      windows.push_back({i, i});
+      sum = 0;
+    }
+    windows.back().last = i;
+    sum += bytes[i];
+  }
+  return windows;
+}
+
+}  // namespace
+
+void export_zone(const MapReader& map, const fb::Zone& zone, JsonLines& json) {
+  const std::string path = map.pack_path(zone);
+  const PackReader pack = map.open_pack(zone);
+  for (const OrdinalRange window : windows_of(pack.index())) {
+    const Result<DecodedPack> decoded = DecodedPack::decode(pack, kEveryPayload, window);
+    if (!decoded) MapReader::fail(path, decoded.error());
+    if (decoded->view().size() != window.last - window.first + 1) {
+      MapReader::fail(path, {ErrorCode::kMismatch, window.first});
+    }
+    for (std::uint32_t i = window.first; i <= window.last; ++i) {
+      try {
+        write_signature(json, zone.name()->string_view(), decode_record(decoded->view(), i),
+                        map.manifest().payload_mask());
+      } catch (const std::runtime_error& error) {
+        throw std::runtime_error(path + ": " + error.what() + "; build the map anew");
+      }
+    }
+  }
+}
+
+}  // namespace zonepack::packer

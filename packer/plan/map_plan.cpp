@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/plan/map_plan.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <set>
+
+namespace zonepack::packer {
+namespace {
+
+ByteCount stored_bytes(const fb::Zone& zone, PayloadMask payload) {
+  const PayloadMask loaded = payload_closure(payload, zone.grid_needs_scan());
+  ByteCount sum = 0;
+  for (const fb::PayloadBytes* bytes : *zone.payloads()) {
+    if ((loaded >> bytes->kind() & 1) != 0) sum += bytes->stored();
+  }
+  return sum;
+}
+
+std::set<ZonePair> neighbours(const fb::Manifest& manifest) {
+  std::set<ZonePair> pairs;
+  if (manifest.portals() == nullptr) return pairs;
+  for (const fb::Portal* portal : *manifest.portals()) {
+    pairs.insert(std::minmax(portal->zone_a(), portal->zone_b()));
+  }
+  return pairs;
+}
+
+BudgetPlan plan_budget(const fb::Manifest& manifest, const MapPlan& plan, ByteCount bytes) {
+  BudgetPlan budget;
+  budget.bytes = bytes;
+  budget.suffices = bytes >= plan.smallest.bytes;
+  budget.slots = slots_within(bytes, plan.fixed_bytes);
+  std::uint64_t pinned = 0;
+  std::vector<std::uint64_t> others;
+  for (const PlanZone& zone : plan.zones) {
+    if (zone.pinned) {
+      pinned += zone.slots;
+    } else {
+      others.push_back(zone.slots);
+    }
+  }
+  const auto beside_pins = [&](ZoneId zone) {
+    return plan.zones[zone].pinned ? std::uint64_t{0} : std::uint64_t{plan.zones[zone].slots};
+  };
+  const auto fits = [&](std::uint64_t slots) {
+    return bytes >= plan.fixed_bytes && pinned + slots <= budget.slots;
+  };
+  for (ZoneId zone = 0; zone < plan.zones.size(); ++zone) {
+    if (!fits(beside_pins(zone))) budget.zones_without_room.push_back(zone);
+  }
+  for (const auto& [a, b] : neighbours(manifest)) {
+    const bool alone = fits(beside_pins(a)) && fits(beside_pins(b));
+    if (alone && !fits(beside_pins(a) + beside_pins(b)))
+      budget.pairs_without_room.push_back({a, b});
+  }
+  std::sort(others.begin(), others.end(), std::greater<>());
+  std::uint64_t sum = 0;
+  for (const std::uint64_t slots : others) {
+    sum += slots;
+    if (!fits(sum)) break;
+    ++budget.largest_zones_at_once;
+  }
+  budget.whole_map = fits(0) && budget.largest_zones_at_once == others.size();
+  if (fits(0)) budget.largest_zones_at_once += plan.zones.size() - others.size();
+  return budget;
+}
+
+}  // namespace
+
+MapPlan plan_map(const fb::Manifest& manifest, PayloadMask payload, std::span<const ZoneId> pinned,
+                 std::optional<ByteCount> budget) {
+  const MapCosts costs = map_costs(manifest, payload);
+  MapPlan plan;
+  plan.payload = payload;
+  plan.fixed_bytes = costs.fixed_bytes;
+  plan.smallest = smallest_budget(manifest, costs, pinned);
+  std::uint64_t largest = 0;
+  for (ZoneId id = 0; id < manifest.zones()->size(); ++id) {
+    const fb::Zone& zone = *manifest.zones()->Get(id);
+    const std::uint32_t slots = costs.zone_slots[id];
+    const bool is_pinned = std::find(pinned.begin(), pinned.end(), id) != pinned.end();
+    plan.zones.push_back({zone.name()->str(), zone.signatures(), slots, slots * kSlotBytes,
+                          stored_bytes(zone, payload), is_pinned});
+    largest = std::max<std::uint64_t>(largest, slots);
+  }
+  plan.live_change_bytes = plan.smallest.bytes + charged_with(plan.fixed_bytes, largest);
+  if (budget) plan.budget = plan_budget(manifest, plan, *budget);
+  return plan;
+}
+
+}  // namespace zonepack::packer

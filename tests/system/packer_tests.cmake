@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+# Tests of the packer as a program.
+
+if(TARGET zonepack)
+  find_package(SQLite3 REQUIRED)
+  find_package(ZLIB REQUIRED)
+  find_package(nlohmann_json CONFIG REQUIRED)
+
+  # Links nothing of the packer: a second opinion about the database.
+  add_executable(round_trip_check ${CMAKE_CURRENT_LIST_DIR}/round_trip/round_trip_check.cpp
+                 ${CMAKE_CURRENT_LIST_DIR}/round_trip/expected_signature.cpp)
+  zonepack_settings(round_trip_check)
+  target_link_libraries(round_trip_check PRIVATE SQLite::SQLite3 ZLIB::ZLIB
+                        nlohmann_json::nlohmann_json)
+  set(zones ${PROJECT_SOURCE_DIR}/tests/data/zones.geojson)
+  set(all_payloads features,scan,grid,image,depth,userdata)
+  add_test(NAME system/round_trip_hospital_small
+           COMMAND round_trip_check $<TARGET_FILE:zonepack>
+                   ${PROJECT_SOURCE_DIR}/tests/data/hospital-small.db ${zones} ${all_payloads})
+  add_test(NAME system/round_trip_some_payloads
+           COMMAND round_trip_check $<TARGET_FILE:zonepack>
+                   ${PROJECT_SOURCE_DIR}/tests/data/hospital-small.db ${zones} grid,image)
+  add_test(NAME system/round_trip_hospital
+           COMMAND round_trip_check $<TARGET_FILE:zonepack> "$ZONEPACK_HOSPITAL_DB" ${zones}
+                   ${all_payloads})
+  set_tests_properties(system/round_trip_hospital_small system/round_trip_some_payloads
+                       system/round_trip_hospital PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
+endif()
