@@ -13,6 +13,8 @@
 #include <iterator>
 #include <set>
 
+#include "tests/support/temporary_folder.hpp"
+
 namespace zonepack {
 namespace {
 
@@ -20,17 +22,11 @@ namespace fs = std::filesystem;
 
 class AtomicFileTest : public testing::Test {
  protected:
-  AtomicFileTest() {
-    std::string name = (fs::temp_directory_path() / "atomic_file_XXXXXX").string();
-    EXPECT_NE(::mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  ~AtomicFileTest() override { fs::remove_all(folder_); }
-
   std::string path(const char* name) const { return (folder_ / name).string(); }
   std::set<std::string> files() const {
     std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
+    for (const auto& entry : fs::directory_iterator(folder_.path()))
+      names.insert(entry.path().filename());
     return names;
   }
   static std::string read(const std::string& path) {
@@ -38,7 +34,7 @@ class AtomicFileTest : public testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
-  fs::path folder_;
+  test_support::TemporaryFolder folder_;
 };
 
 TEST_F(AtomicFileTest, AppearsOnlyWhenCommitted) {

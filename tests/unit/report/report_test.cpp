@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/support/temporary_folder.hpp"
 #include "tests/support/xml_check.hpp"
 
 namespace zonepack::report {
@@ -31,18 +32,12 @@ Report sample() {
 
 class ReportFileTest : public testing::Test {
  protected:
-  ReportFileTest() {
-    std::string name = (fs::temp_directory_path() / "report_XXXXXX").string();
-    EXPECT_NE(::mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  ~ReportFileTest() override { fs::remove_all(folder_); }
   std::string path(const char* name) const { return (folder_ / name).string(); }
   static std::string read(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  fs::path folder_;
+  test_support::TemporaryFolder folder_;
 };
 
 TEST(Report, AsAPageIsWellFormedAndHoldsEverything) {
@@ -116,12 +111,12 @@ TEST_F(ReportFileTest, AMissingFolderIsNamed) {
 
 TEST_F(ReportFileTest, WithoutRsvgConvertItSaysWhatToInstallAndLeavesNothing) {
   const std::string old = ::getenv("PATH");
-  ::setenv("PATH", folder_.c_str(), 1);
+  ::setenv("PATH", folder_.path().c_str(), 1);
   const std::optional<std::string> problem = write_report(path("r.png"), sample());
   ::setenv("PATH", old.c_str(), 1);
   ASSERT_TRUE(problem.has_value());
   EXPECT_NE(problem->find("librsvg2-bin"), std::string::npos);
-  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
 TEST_F(ReportFileTest, AFailingRsvgConvertLeavesTheOldPicture) {
@@ -129,7 +124,7 @@ TEST_F(ReportFileTest, AFailingRsvgConvertLeavesTheOldPicture) {
   std::ofstream(path("rsvg-convert")) << "#!/bin/sh\nexit 3\n";
   fs::permissions(path("rsvg-convert"), fs::perms::owner_all);
   const std::string old = ::getenv("PATH");
-  ::setenv("PATH", folder_.c_str(), 1);
+  ::setenv("PATH", folder_.path().c_str(), 1);
   const std::optional<std::string> problem = write_report(path("r.png"), sample());
   ::setenv("PATH", old.c_str(), 1);
   ASSERT_TRUE(problem.has_value());

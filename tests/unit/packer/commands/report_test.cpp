@@ -2,14 +2,15 @@
 #include "packer/commands/report.hpp"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <sstream>
 
 #include "packer/build/map_builder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -20,20 +21,18 @@ namespace fs = std::filesystem;
 class ReportCommandTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    std::string name = (fs::temp_directory_path() / "report_command_XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    folder_ = name;
+    folder_ = std::make_unique<test_support::TemporaryFolder>();
     BuildOptions options;
     options.database = fs::path(ZONEPACK_TEST_DATA) / "hospital-small.db";
     options.zones = fs::path(ZONEPACK_TEST_DATA) / "zones.geojson";
-    options.out = folder_ / "map";
+    options.out = *folder_ / "map";
     std::ostringstream quiet;
     Progress progress(quiet, false);
     built_ = build_map(options, progress);
   }
-  static void TearDownTestSuite() { fs::remove_all(folder_); }
+  static void TearDownTestSuite() { folder_.reset(); }
 
-  static std::string map() { return (folder_ / "map").string(); }
+  static std::string map() { return (*folder_ / "map").string(); }
 
   static std::string problem_of(const std::string& folder) {
     try {
@@ -44,7 +43,7 @@ class ReportCommandTest : public testing::Test {
     return "";
   }
 
-  static inline fs::path folder_;
+  static inline std::unique_ptr<test_support::TemporaryFolder> folder_;
   static inline BuildSummary built_;
 };
 
@@ -84,7 +83,7 @@ TEST_F(ReportCommandTest, WritesThePageAndSaysSoByItsExitCode) {
   CLI::App app;
   int exit_code = 7;
   add_report_command(app, exit_code);
-  const std::string out = (folder_ / "report.html").string();
+  const std::string out = (*folder_ / "report.html").string();
   app.parse(
       std::vector<std::string>{out, "--out", map(), "report"});  // CLI11 takes them in reverse
   EXPECT_EQ(exit_code, 0);
@@ -98,17 +97,17 @@ TEST_F(ReportCommandTest, RefusesAnotherKindOfFileByItsName) {
   CLI::App app;
   int exit_code = 7;
   add_report_command(app, exit_code);
-  const std::string out = (folder_ / "report.pdf").string();
+  const std::string out = (*folder_ / "report.pdf").string();
   EXPECT_THROW(app.parse(std::vector<std::string>{out, "--out", map(), "report"}),
                CLI::ValidationError);
   EXPECT_EQ(exit_code, 7);
 }
 
 TEST_F(ReportCommandTest, NamesAManifestThatIsMissingOrDamaged) {
-  const std::string missing = (folder_ / "none").string();
+  const std::string missing = (*folder_ / "none").string();
   EXPECT_EQ(problem_of(missing),
             missing + "/manifest.zpm: not found; is this a map that 'zonepack build' wrote?");
-  const fs::path damaged = folder_ / "damaged";
+  const fs::path damaged = *folder_ / "damaged";
   fs::create_directory(damaged);
   fs::copy_file(fs::path(map()) / "manifest.zpm", damaged / "manifest.zpm");
   std::fstream file(damaged / "manifest.zpm", std::ios::in | std::ios::out | std::ios::binary);

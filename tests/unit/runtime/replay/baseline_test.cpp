@@ -2,32 +2,23 @@
 #include "runtime/replay/baseline.hpp"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
-#include <unistd.h>
 
-#include <cstdio>
-#include <filesystem>
 #include <fstream>
+
+#include "tests/support/temporary_folder.hpp"
 
 namespace zonepack {
 namespace {
 
 class BaselineTest : public testing::Test {
  protected:
-  BaselineTest() {
-    path_ = (std::filesystem::temp_directory_path() / "baseline_XXXXXX").string();
-    const int fd = ::mkstemp(path_.data());
-    EXPECT_GE(fd, 0);
-    ::close(fd);
-  }
-  ~BaselineTest() override { std::remove(path_.c_str()); }
-
   std::string problem_of(const std::string& text) {
     std::ofstream(path_, std::ios::binary) << text;
     return read_baseline(path_, rows_).value_or("");
   }
 
-  std::string path_;
+  test_support::TemporaryFolder folder_;
+  std::string path_ = (folder_ / "baseline.csv").string();
   std::vector<BaselineRow> rows_;
 };
 
