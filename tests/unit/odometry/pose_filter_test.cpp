@@ -227,6 +227,17 @@ TEST(PoseFilter, RefusesFixesOutsideTheGate) {
   EXPECT_EQ(drive.filter.counters().outliers, 2u);
 }
 
+TEST(PoseFilter, NoFixIsBelievedToBePerfect) {
+  Drive drive;
+  drive.trust();
+  PoseCorrection fix = drive.fix(drive.now());
+  fix.sigma_x_m = fix.sigma_y_m = fix.sigma_yaw_rad = 1e-12;
+  EXPECT_EQ(drive.filter.correct(fix, drive.now()), Verdict::kUsed);
+  const Covariance2 covariance = drive.filter.estimate(drive.now()).covariance;
+  EXPECT_GT(std::sqrt(covariance.xx), 0.004);  // 5 mm, and what was known before
+  EXPECT_GT(std::sqrt(covariance.yaw_yaw), 0.0009);
+}
+
 TEST(PoseFilter, RefusesWhatIsTooOldFromTheFutureOrNotANumber) {
   Drive drive;
   drive.trust();
@@ -270,6 +281,17 @@ TEST(PoseFilter, ARunOfRefusedFixesThatAgreeMovesThePose) {
   EXPECT_EQ(drive.filter.counters().reinitialised, 1u);
   drive.steps(50);
   EXPECT_EQ(drive.correct_now(3, 0, 0), Verdict::kUsed);
+}
+
+TEST(PoseFilter, AfterAMoveFixesOfTheOldPlaceCountNoMore) {
+  Drive drive;
+  drive.trust();
+  drive.steps(100);
+  EXPECT_EQ(drive.correct_now(), Verdict::kUsed);
+  // Three fixes from before that one come late, and agree on another place.
+  for (const int ago_ms : {600, 400, 200}) drive.correct(drive.now() - ago_ms * kMs, 3, 0, 0);
+  EXPECT_EQ(drive.filter.counters().reinitialised, 1u);
+  EXPECT_NEAR(drive.error_m(), 3, 1e-9);
 }
 
 TEST(PoseFilter, RefusedFixesThatDisagreeOrAreInterruptedDoNotMoveThePose) {
@@ -411,7 +433,7 @@ TEST(PoseFilter, FastOdometrySharesEntriesOfTheHistory) {
     pose = compose(pose, increment.motion.pose);
     truth.push_back(pose);
     filter.predict(increment);
-    if (ms == 1000 || ms == 2000) filter.correct(fix(ms, 0.03), ms * kMs);
+    if (ms == 1007 || ms == 2013) filter.correct(fix(ms, 0.03), ms * kMs);
   }
   EXPECT_TRUE(filter.estimate(3000 * kMs).trusted);
   EXPECT_EQ(filter.correct(fix(2100, 0.03), 3000 * kMs), Verdict::kUsed);

@@ -137,6 +137,17 @@ TEST(WheelOdometry, RefusesFramesThatAreShortRequestsOrOld) {
   EXPECT_TRUE(odometry.take(positions(120, 1, 1)).has_value());
 }
 
+TEST(WheelOdometry, FramesThatWereOvertakenAreRefusedHoweverManyComeInARow) {
+  WheelOdometry odometry(agilex());
+  for (int t : {0, 20, 40, 60, 80, 100}) odometry.take(positions(t, t, t));
+  for (int t : {20, 40, 60, 80}) EXPECT_FALSE(odometry.take(positions(t, t, t)).has_value());
+  const auto step = odometry.take(positions(120, 120, 120));
+  ASSERT_TRUE(step.has_value());
+  EXPECT_EQ(step->from_ns, 100 * kMs);
+  EXPECT_EQ(odometry.counters().rejected, 4u);
+  EXPECT_EQ(odometry.counters().rebased, 0u);
+}
+
 TEST(WheelOdometry, ASinglePositionOutOfPlaceIsRefusedWithoutLosingMotion) {
   WheelOdometry odometry(agilex());
   odometry.take(positions(0, 0, 0));
