@@ -134,7 +134,9 @@ void parse_scan_info(std::span<const std::byte> info, SchemaVersion version, con
                      Scan& scan) {
   if (info.empty()) return;
   std::size_t fields = 7;
-  if (version < kNewLayouts) fields = info.size() == 15 * sizeof(float) ? 3 : 2;
+  for (const std::size_t old : {2u, 3u}) {
+    if (version < kNewLayouts && info.size() == (old + 12) * sizeof(float)) fields = old;
+  }
   expect_elements(info, fields + 12, sizeof(float), "float32", place);
   const auto local = transform_from(info.subspan(fields * sizeof(float)), place);
   scan.local_transform = local.value_or(Transform{});
@@ -176,18 +178,13 @@ void check_grid_cells(const Matrix& cells, const Place& place) {
 
 void check_calibration(std::span<const std::byte> bytes, SchemaVersion version,
                        const Place& place) {
-  if (version >= kNewLayouts) {
-    Calibration rest(bytes, place);
-    while (!rest.empty()) rest.camera();
-    return;
+  if (version < kNewLayouts && bytes.size() % sizeof(float) == 0) {
+    const std::size_t per_camera = version < kImageSizeInCalibration ? 16 : 18;
+    const std::size_t count = bytes.size() / sizeof(float);
+    if (count % per_camera == 0 || count == 19 || count == 17) return;
   }
-  const std::size_t per_camera = version < kImageSizeInCalibration ? 16 : 18;
-  const std::size_t count = bytes.size() / sizeof(float);
-  const bool whole = bytes.size() % sizeof(float) == 0;
-  if (whole && (count % per_camera == 0 || count == 19 || count == 17)) return;
-  place.damaged("expected " + std::to_string(per_camera) +
-                " float32 a camera, or 19 or 17 for a stereo camera, found " +
-                std::to_string(bytes.size()) + " bytes");
+  Calibration rest(bytes, place);
+  while (!rest.empty()) rest.camera();
 }
 
 }  // namespace zonepack::packer

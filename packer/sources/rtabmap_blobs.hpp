@@ -17,8 +17,9 @@ namespace zonepack::packer {
 std::uint32_t scan_channels(std::int32_t format) noexcept;
 
 // Fills everything of `scan` but its data. Since 0.18: 19 float32 {format, range min, range max,
-// angle min, angle max, increment, max points, local 12}; from 0.16.1: 15 {max points, range max,
-// format, local 12}; before: 14 {max points, range max, local 12}. An empty blob leaves format 0.
+// angle min, angle max, increment, max points, local 12}. Databases of earlier versions may also
+// have 15 (from 0.16.1) {max points, range max, format, local 12} or 14 {max points, range max,
+// local 12}. An empty blob leaves format 0.
 void parse_scan_info(std::span<const std::byte> info, SchemaVersion version, const Place& place,
                      Scan& scan);
 
@@ -29,7 +30,8 @@ void check_scan(const Scan& scan, const Place& place);
 void check_grid_cells(const Matrix& cells, const Place& place);
 
 // Camera calibrations. Since 0.18: records of mono or stereo cameras one after the other, each with
-// its sizes in front. Before: 18 float32 a camera (16 before 0.11.2), or 19 or 17 for one stereo.
+// its sizes in front. Databases of earlier versions may also have 18 float32 a camera (16 before
+// 0.11.2), or 19 or 17 for one stereo camera.
 void check_calibration(std::span<const std::byte> bytes, SchemaVersion version, const Place& place);
 
 }  // namespace zonepack::packer

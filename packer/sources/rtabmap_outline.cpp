@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "packer/sources/rtabmap_outline.hpp"
 
-#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
@@ -138,11 +138,16 @@ void read_optimised_map(const SqliteFile& file, const RtabmapSchema& schema, Map
   if (!row.step()) return;
   AdminMatrix cells = admin_matrix(file, row, 0, "Admin.opt_map", kInt8);
   if (!cells.present) return;
-  const Place place{&file.name(), 0, "Admin.opt_map"};
+  // Drawn, not packed: the nearest float32 will do.
+  const auto number = [&](int column, const char* name) {
+    const Place place{&file.name(), 0, name};
+    const double value = finite_cell(row, column, place);
+    if (std::fabs(value) > std::numeric_limits<float>::max()) place.damaged("is too large");
+    return static_cast<float>(value);
+  };
   outline.optimised_map =
-      OptimisedMap{std::move(cells.matrix), float_cell(row, 1, place.at("Admin.opt_map_x_min"), 0),
-                   float_cell(row, 2, place.at("Admin.opt_map_y_min"), 0),
-                   float_cell(row, 3, place.at("Admin.opt_map_resolution"), 0)};
+      OptimisedMap{std::move(cells.matrix), number(1, "Admin.opt_map_x_min"),
+                   number(2, "Admin.opt_map_y_min"), number(3, "Admin.opt_map_resolution")};
 }
 
 void read_parameters(const SqliteFile& file, const RtabmapSchema& schema, MapOutline& outline) {
@@ -190,11 +195,11 @@ void read_totals(const SqliteFile& file, const RtabmapSchema& schema, MapOutline
 
 // For what the map can do without: a part that cannot be read is told, not fatal.
 template <typename Read>
-void read_if_possible(MapOutline& outline, Read read) {
+void read_if_possible(MapOutline& outline, const char* without, Read read) {
   try {
     read();
   } catch (const std::runtime_error& error) {
-    outline.warnings.emplace_back(error.what());
+    outline.warnings.push_back(std::string(error.what()) + "; going on without " + without);
   }
 }
 
@@ -220,9 +225,11 @@ MapOutline read_outline(const SqliteFile& file, const RtabmapSchema& schema) {
   read_nodes(file, schema, outline);
   read_optimised_poses(file, schema, outline);
   count_unlinked(outline);
-  read_if_possible(outline, [&] { read_optimised_map(file, schema, outline); });
-  read_if_possible(outline, [&] { read_parameters(file, schema, outline); });
-  read_if_possible(outline, [&] { read_totals(file, schema, outline); });
+  read_if_possible(outline, "RTAB-Map's own occupancy grid",
+                   [&] { read_optimised_map(file, schema, outline); });
+  read_if_possible(outline, "its parameters", [&] { read_parameters(file, schema, outline); });
+  read_if_possible(outline, "some totals of the size report",
+                   [&] { read_totals(file, schema, outline); });
   return outline;
 }
 
