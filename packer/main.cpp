@@ -5,7 +5,9 @@
 #include <iostream>
 
 #include "packer/commands/build.hpp"
+#include "packer/commands/check_zones.hpp"
 #include "packer/commands/export.hpp"
+#include "packer/commands/outline.hpp"
 #include "packer/commands/plan.hpp"
 #include "packer/commands/report.hpp"
 
@@ -18,7 +20,9 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = 0;
   zonepack::packer::add_build_command(app, exit_code);
+  zonepack::packer::add_check_zones_command(app, exit_code);
   zonepack::packer::add_export_command(app, exit_code);
+  zonepack::packer::add_outline_command(app, exit_code);
   zonepack::packer::add_plan_command(app, exit_code);
   zonepack::packer::add_report_command(app, exit_code);
   try {
