@@ -223,6 +223,12 @@ CorrectionVerdict PoseFilter::count(CorrectionVerdict verdict) noexcept {
   return verdict;
 }
 
+// The first fix of a run may be stamped a moment before the first odometry came.
+bool PoseFilter::is_just_before_start(std::int64_t stamp_ns) const noexcept {
+  return !history_.full() && seconds_between(stamp_ns, history_.at(history_.oldest()).t_ns) <=
+                                 settings_.extrapolate_s;
+}
+
 CorrectionVerdict PoseFilter::correct(const PoseCorrection& fix, std::int64_t now_ns) noexcept {
   if (!is_plausible(fix)) return count(Verdict::kInvalid);
   if (seconds_between(now_ns, fix.stamp_ns) > settings_.future_tolerance_s) {
@@ -236,10 +242,13 @@ CorrectionVerdict PoseFilter::correct(const PoseCorrection& fix, std::int64_t no
     z = step_back(z, motion_since_newest(ahead));
   } else {
     const std::optional<std::uint64_t> found = history_.find(fix.stamp_ns);
-    if (!found || (trusted_ && *found < valid_from_)) return count(Verdict::kTooOld);
-    index = *found;
-    split_drift(index, fix.stamp_ns);
-    z = history_.carry_to_entry(z, fix.stamp_ns, index);
+    if (!found && !is_just_before_start(fix.stamp_ns)) return count(Verdict::kTooOld);
+    index = found.value_or(history_.oldest());
+    if (trusted_ && index < valid_from_) return count(Verdict::kTooOld);
+    if (found) {
+      split_drift(index, fix.stamp_ns);
+      z = history_.carry_to_entry(z, fix.stamp_ns, index);
+    }
   }
   const Verdict verdict = trusted_ ? place(z, index) : support(z, index);
   list_hypotheses();

@@ -117,6 +117,7 @@ class PoseFilter {
   void make_room() noexcept;
   void split_drift(std::uint64_t index, std::int64_t t_ns) noexcept;
   void bridge_pause(const OdometryIncrement& increment) noexcept;
+  bool is_just_before_start(std::int64_t stamp_ns) const noexcept;
   CorrectionVerdict count(CorrectionVerdict verdict) noexcept;
   CorrectionVerdict place(const UncertainPose& fix, std::uint64_t index) noexcept;
   CorrectionVerdict support(const UncertainPose& fix, std::uint64_t index) noexcept;
