@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "runtime/odometry/det_math.hpp"
 #include "runtime/odometry/se2.hpp"
@@ -46,6 +47,11 @@ bool leaves_through(const Exit& exit, Point2 from, Point2 to, double slack_m) no
   return place >= -slack_m && place <= length + slack_m;
 }
 
+bool sooner(const Approach& a, const Approach& b) noexcept {
+  if (a.ahead != b.ahead) return a.ahead;
+  return a.entry_s != b.entry_s ? a.entry_s < b.entry_s : a.zone < b.zone;
+}
+
 }  // namespace
 
 Preload::Preload(const ZoneGraph& graph, std::span<const float> load_s,
@@ -76,7 +82,7 @@ void Preload::update(const PoseEstimate& pose, ZoneId zone) noexcept {
   const Point2 point{pose.T_map_base.x_m, pose.T_map_base.y_m};
   const double three_sigma_m = 3 * position_sigma_m(pose.covariance);
   for (const Exit& exit : graph_.exits(zone)) {
-    if (distance_m(exit.segment, point) <= three_sigma_m) see(exit.to, 0, pose.t_ns);
+    if (distance_m(exit.segment, point) <= three_sigma_m) see({exit.to, false, 0, pose.t_ns});
   }
   const bool standing = std::abs(speed_m_s_) < settings_.standing_m_s;
   if (!standing) follow_path(pose, zone, three_sigma_m + settings_.margin_m);
@@ -86,9 +92,11 @@ void Preload::update(const PoseEstimate& pose, ZoneId zone) noexcept {
     return held.zone == zone || (!standing && pose.t_ns - held.seen_ns > hold_ns);
   });
   count_ = static_cast<std::size_t>(end - held_.begin());
-  std::sort(held_.begin(), end, [](const Approach& a, const Approach& b) {
-    return a.entry_s != b.entry_s ? a.entry_s < b.entry_s : a.zone < b.zone;
-  });
+  for (std::size_t i = 1; i < count_; ++i) {
+    for (std::size_t k = i; k > 0 && sooner(held_[k], held_[k - 1]); --k) {
+      std::swap(held_[k], held_[k - 1]);
+    }
+  }
 }
 
 const Exit* Preload::exit_on(ZoneId zone, Point2 from, Point2 to, double slack_m) const noexcept {
@@ -123,7 +131,7 @@ void Preload::follow_path(const PoseEstimate& pose, ZoneId zone, double margin_m
     const Exit* exit = nullptr;
     while (hops < kMaxHops && (exit = exit_on(zone, at, next, slack_m)) != nullptr) {
       if (entry_m <= speed * static_cast<double>(load_s_[exit->to]) + margin_m) {
-        see(exit->to, entry_m / speed, pose.t_ns);
+        see({exit->to, true, entry_m / speed, pose.t_ns});
       }
       zone = exit->to;
       ++hops;
@@ -134,22 +142,20 @@ void Preload::follow_path(const PoseEstimate& pose, ZoneId zone, double margin_m
   }
 }
 
-void Preload::see(ZoneId zone, double entry_s, std::int64_t t_ns) noexcept {
+void Preload::see(const Approach& seen) noexcept {
   const auto end = held_.begin() + count_;
-  auto place =
-      std::find_if(held_.begin(), end, [&](const Approach& held) { return held.zone == zone; });
+  auto place = std::find_if(held_.begin(), end,
+                            [&](const Approach& held) { return held.zone == seen.zone; });
   if (place != end) {
-    if (place->seen_ns != t_ns || entry_s < place->entry_s) *place = {zone, entry_s, t_ns};
+    if (place->seen_ns != seen.seen_ns || sooner(seen, *place)) *place = seen;
     return;
   }
   if (count_ < kMaxApproaches) {
-    held_[count_++] = {zone, entry_s, t_ns};
+    held_[count_++] = seen;
     return;
   }
-  place = std::max_element(held_.begin(), end, [](const Approach& a, const Approach& b) {
-    return a.entry_s < b.entry_s;
-  });
-  if (entry_s < place->entry_s) *place = {zone, entry_s, t_ns};
+  place = std::max_element(held_.begin(), end, sooner);
+  if (sooner(seen, *place)) *place = seen;
 }
 
 }  // namespace zonepack

@@ -12,11 +12,12 @@
 
 namespace zonepack {
 
-// A zone the robot is about to enter.
+// A zone the robot is about to enter, or may be in already.
 struct Approach {
   ZoneId zone = kNoZone;
-  double entry_s = 0;        // when last seen, from then; 0: it may be in there already
-  std::int64_t seen_ns = 0;  // when the path last led there
+  bool ahead = false;        // its path leads there; else a portal is within three sigma
+  double entry_s = 0;        // ahead: when it will be entered, from seen_ns on
+  std::int64_t seen_ns = 0;  // when that was last so
 };
 
 struct PreloadSettings {
@@ -55,14 +56,15 @@ class Preload {
   // Forgets approaches and motion, as after re-initialisation.
   void restart() noexcept;
 
-  // Soonest entry first, then lowest ZoneId; the zone given to update() is never among them.
+  // Zones ahead first, the soonest entered first, then lowest ZoneId. Never the zone given to
+  // update().
   std::span<const Approach> approaches() const noexcept { return {held_.data(), count_}; }
 
  private:
   void smooth(const PoseEstimate& pose) noexcept;
   void follow_path(const PoseEstimate& pose, ZoneId zone, double margin_m) noexcept;
   const Exit* exit_on(ZoneId zone, Point2 from, Point2 to, double slack_m) const noexcept;
-  void see(ZoneId zone, double entry_s, std::int64_t t_ns) noexcept;
+  void see(const Approach& seen) noexcept;
 
   const ZoneGraph& graph_;
   std::span<const float> load_s_;

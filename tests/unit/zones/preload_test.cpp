@@ -120,7 +120,7 @@ TEST_F(PreloadTest, GivesUpAnApproachOnceThePathLeadsElsewhereForAWhile) {
 TEST_F(PreloadTest, KeepsBothZonesOfAPortalThatIsWithinThreeSigma) {
   at(pose_at(4.08, 2), 1, 1.0);  // just through the door, 8 cm < 9 cm
   EXPECT_EQ(approached(), Zones{0});
-  EXPECT_EQ(preload.approaches()[0].entry_s, 0);
+  EXPECT_FALSE(preload.approaches()[0].ahead);
 }
 
 TEST_F(PreloadTest, SeesTheZoneBehindTheNextWhenBothAreClose) {
