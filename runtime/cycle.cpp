@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cycle.hpp"
+
+#include <algorithm>
+
+#include "runtime/odometry/se2.hpp"
+
+namespace zonepack {
+namespace {
+
+// To the nearest thousandth, by arithmetic that every machine does alike.
+std::int32_t thousandths(double value) noexcept {
+  constexpr double kMost = 2e9;
+  const double scaled = std::clamp(value * 1000, -kMost, kMost);
+  return static_cast<std::int32_t>(scaled < 0 ? scaled - 0.5 : scaled + 0.5);
+}
+
+}  // namespace
+
+Cycle::Cycle(const CycleConfig& settings, const CycleParts& parts)
+    : graph_(parts.graph),
+      needs_(parts.needs),
+      memory_(parts.memory),
+      events_(parts.events),
+      odometry_(settings.odometry),
+      filter_(settings.filter),
+      tracker_(parts.graph, settings.tracker),
+      preload_(parts.graph, parts.load_s, settings.preload),
+      keeper_(parts.memory, parts.loader, events_, parts.needs, parts.pinned, settings.keeper),
+      tracker_settings_(settings.tracker) {}
+
+void Cycle::start_at(std::int64_t now_ns, const Pose2& T_map_base) noexcept {
+  filter_.start_at(now_ns, T_map_base);
+}
+
+const CycleState& Cycle::run(std::int64_t now_ns, std::span<const CanFrame> frames,
+                             std::span<const PoseCorrection> corrections) noexcept {
+  if (state_.cycles == 0) start_ns_ = now_ns;
+  events_.begin_cycle(state_.cycles, now_ns - start_ns_);
+  if (state_.cycles == 0) emit(EventKind::kStart);
+  ++state_.cycles;
+
+  const bool had_pose = state_.pose.valid;
+  for (const CanFrame& frame : frames) {
+    if (const auto increment = odometry_.take(frame)) filter_.predict(*increment);
+  }
+  watch_odometry(now_ns);
+  for (const PoseCorrection& fix : corrections) take(fix, now_ns);
+  state_.pose = filter_.estimate(now_ns);
+  if (state_.pose.valid && !had_pose) emit(EventKind::kPoseInitialised);
+
+  keeper_.collect(now_ns);
+  follow_zones();
+  const Wanted wanted = list_wanted();
+  keeper_.keep(now_ns, {wanted.zones.data(), wanted.count}, wanted.urgent);
+
+  state_.zone_resident = state_.zone != kNoZone && memory_.resident(state_.zone);
+  state_.map_ready = state_.pose.trusted && state_.zone_resident;
+  state_.blocked = keeper_.blocked();
+  return state_;
+}
+
+void Cycle::take(const PoseCorrection& fix, std::int64_t now_ns) noexcept {
+  const CorrectionVerdict verdict = filter_.correct(fix, now_ns);
+  state_.pose = filter_.estimate(now_ns);
+  switch (verdict) {
+    case CorrectionVerdict::kUsed:
+      return;
+    case CorrectionVerdict::kHypothesis:
+      tracker_.restart();
+      return;
+    case CorrectionVerdict::kTrusted:
+      tracker_.restart();
+      emit(EventKind::kPoseTrusted);
+      return;
+    case CorrectionVerdict::kReinitialised:
+      tracker_.restart();
+      preload_.restart();
+      emit(EventKind::kPoseReinitialised);
+      return;
+    default:
+      emit(EventKind::kCorrectionRejected, kNoZone, to_string(verdict));
+  }
+}
+
+void Cycle::watch_odometry(std::int64_t now_ns) noexcept {
+  const bool stale = odometry_.stale(now_ns);
+  if (stale) filter_.drift_until(now_ns);
+  if (stale == odometry_stale_) return;
+  odometry_stale_ = stale;
+  emit(stale ? EventKind::kOdometryStale : EventKind::kOdometryResumed);
+}
+
+void Cycle::follow_zones() noexcept {
+  const ZoneId before = tracker_.zone();
+  if (tracker_.update(state_.pose)) {
+    state_.zone = tracker_.zone();
+    emit(EventKind::kZoneEntered, state_.zone);
+    if (before != kNoZone) {
+      ++state_.zone_switches;
+      if (!memory_.resident(state_.zone)) emit(EventKind::kNotKeepingUp, state_.zone);
+    }
+  }
+  preload_.update(state_.pose, tracker_.pose_zone());
+}
+
+void Cycle::Wanted::add(ZoneId zone) noexcept {
+  const auto end = zones.begin() + count;
+  if (zone == kNoZone || count == zones.size() || std::find(zones.begin(), end, zone) != end)
+    return;
+  zones[count++] = zone;
+}
+
+Cycle::Wanted Cycle::list_wanted() const noexcept {
+  Wanted wanted;
+  wanted.add(tracker_.zone());
+  wanted.add(tracker_.pose_zone());
+  if (!state_.pose.trusted) {
+    for (const PoseHypothesis& place : filter_.hypotheses()) {
+      wanted.add(graph_.zone_near(
+          {place.T_map_base.x_m, place.T_map_base.y_m},
+          tracker_settings_.start_radius_m + 3 * position_sigma_m(place.covariance)));
+    }
+  }
+  for (const Approach& approach : preload_.approaches()) {
+    if (approach.ahead) wanted.add(approach.zone);
+  }
+  wanted.urgent = wanted.count;
+  for (const Approach& approach : preload_.approaches()) wanted.add(approach.zone);
+  return wanted;
+}
+
+void Cycle::finish() noexcept { emit(EventKind::kEnd); }
+
+void Cycle::emit(EventKind kind, ZoneId zone, const char* reason) noexcept {
+  Event event;
+  event.kind = kind;
+  event.zone = zone;
+  if (zone != kNoZone) {
+    event.generation = memory_.generation(zone);
+    event.signatures = needs_[zone].signatures;
+    event.bytes = needs_[zone].slots * memory_.limits().slot_bytes;
+  }
+  event.charged_signatures = memory_.signatures();
+  event.charged_bytes = memory_.charged();
+  event.reason = reason;
+  event.has_pose = state_.pose.valid;
+  if (event.has_pose) {
+    event.x_mm = thousandths(state_.pose.T_map_base.x_m);
+    event.y_mm = thousandths(state_.pose.T_map_base.y_m);
+    event.yaw_mrad = thousandths(state_.pose.T_map_base.yaw_rad);
+  }
+  events_.emit(event);
+}
+
+}  // namespace zonepack

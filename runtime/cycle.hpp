@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "platform/can_bus.hpp"
+#include "runtime/event.hpp"
+#include "runtime/map_keeper.hpp"
+#include "runtime/memory/residency.hpp"
+#include "runtime/odometry/pose.hpp"
+#include "runtime/odometry/pose_filter.hpp"
+#include "runtime/odometry/wheel_odometry.hpp"
+#include "runtime/zone_loader.hpp"
+#include "runtime/zones/preload.hpp"
+#include "runtime/zones/tracker.hpp"
+#include "runtime/zones/zone_graph.hpp"
+
+namespace zonepack {
+
+struct CycleConfig {
+  WheelOdometrySettings odometry;
+  PoseFilterSettings filter;
+  TrackerSettings tracker;
+  PreloadSettings preload;
+  MapKeeperSettings keeper;
+};
+
+// What a cycle works on; all of it outlives the cycle.
+struct CycleParts {
+  const ZoneGraph& graph;
+  std::span<const ZoneNeed> needs;  // by ZoneId
+  std::span<const float> load_s;    // by ZoneId: estimated seconds from wish to use
+  std::span<const ZoneId> pinned;
+  Residency& memory;
+  ZoneLoader& loader;
+  EventSink& events;
+};
+
+struct CycleState {
+  PoseEstimate pose;
+  ZoneId zone = kNoZone;  // the robot's own, by the tracker
+  bool zone_resident = false;
+  bool map_ready = false;  // the pose is trusted and the robot's own zone resident
+  bool blocked = false;    // a wanted zone does not fit
+  std::uint64_t cycles = 0;
+  std::uint64_t zone_switches = 0;  // from one zone to another
+};
+
+// One step of control, the same in a replay and on the robot: what arrived since the last step goes
+// through odometry, pose, zone and wanted zones to what is evicted and loaded.
+//
+// Invariant: a function of its inputs only: the settings, the map, and what run() is given and the
+// loader answers, in that order. Not of wall clock, memory addresses or timing.
+// Real-time: run() neither allocates, locks, waits nor throws; its work is bounded by the frames
+// and corrections given, plus the bounds of tracker, preload and keeper.   Threads: one.
+class Cycle {
+ public:
+  Cycle(const CycleConfig& settings, const CycleParts& parts);
+
+  // Where the robot may be, told before the first run(): a guess to start from.
+  void start_at(std::int64_t now_ns, const Pose2& T_map_base) noexcept;
+
+  // now_ns never falls, and is the clock of frames and corrections. The first call starts the run.
+  const CycleState& run(std::int64_t now_ns, std::span<const CanFrame> frames,
+                        std::span<const PoseCorrection> corrections) noexcept;
+
+  // Records the end of the run.
+  void finish() noexcept;
+
+  const CycleState& state() const noexcept { return state_; }
+  const WheelOdometryCounters& odometry_counters() const noexcept { return odometry_.counters(); }
+  const PoseFilterCounters& filter_counters() const noexcept { return filter_.counters(); }
+
+ private:
+  void take(const PoseCorrection& fix, std::int64_t now_ns) noexcept;
+  void watch_odometry(std::int64_t now_ns) noexcept;
+  void follow_zones() noexcept;
+  struct Wanted {
+    std::array<ZoneId, MapKeeper::kMaxWanted> zones{};
+    std::size_t count = 0;
+    std::size_t urgent = 0;
+    void add(ZoneId zone) noexcept;
+  };
+  Wanted list_wanted() const noexcept;
+  void emit(EventKind kind, ZoneId zone = kNoZone, const char* reason = nullptr) noexcept;
+
+  const ZoneGraph& graph_;
+  std::span<const ZoneNeed> needs_;
+  Residency& memory_;
+  EventStamper events_;
+  WheelOdometry odometry_;
+  PoseFilter filter_;
+  ZoneTracker tracker_;
+  Preload preload_;
+  MapKeeper keeper_;
+  TrackerSettings tracker_settings_;
+  CycleState state_;
+  std::int64_t start_ns_ = 0;
+  bool odometry_stale_ = true;
+};
+
+}  // namespace zonepack

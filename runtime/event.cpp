@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/event.hpp"
+
+#include "platform/base/require.hpp"
+
+namespace zonepack {
+
+const char* to_string(EventKind kind) noexcept {
+  switch (kind) {
+    case EventKind::kStart:
+      return "start";
+    case EventKind::kPoseInitialised:
+      return "pose_initialised";
+    case EventKind::kPoseTrusted:
+      return "pose_trusted";
+    case EventKind::kPoseReinitialised:
+      return "pose_reinitialised";
+    case EventKind::kCorrectionRejected:
+      return "correction_rejected";
+    case EventKind::kOdometryStale:
+      return "odometry_stale";
+    case EventKind::kOdometryResumed:
+      return "odometry_resumed";
+    case EventKind::kZoneEntered:
+      return "zone_entered";
+    case EventKind::kZoneWanted:
+      return "zone_wanted";
+    case EventKind::kZoneUnwanted:
+      return "zone_unwanted";
+    case EventKind::kLoadStarted:
+      return "load_started";
+    case EventKind::kLoadDone:
+      return "load_done";
+    case EventKind::kLoadCancelled:
+      return "load_cancelled";
+    case EventKind::kLoadGivenUp:
+      return "load_given_up";
+    case EventKind::kLoadFailed:
+      return "load_failed";
+    case EventKind::kEvicted:
+      return "evicted";
+    case EventKind::kBlocked:
+      return "blocked";
+    case EventKind::kUnblocked:
+      return "unblocked";
+    case EventKind::kNotKeepingUp:
+      return "not_keeping_up";
+    case EventKind::kEnd:
+      return "end";
+  }
+  ZP_REQUIRE(false);
+  return "";
+}
+
+}  // namespace zonepack

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "platform/base/byte_count.hpp"
+#include "runtime/pack_format/ids.hpp"
+
+namespace zonepack {
+
+// What happened, in the words of the event log (event_log.hpp tells each event's fields).
+enum class EventKind : std::uint8_t {
+  kStart,
+  kPoseInitialised,     // the first hypothesis of where the robot is
+  kPoseTrusted,         // two fixes agreed
+  kPoseReinitialised,   // a run of rejected fixes agreed: the pose was moved there
+  kCorrectionRejected,  // reason: the filter's verdict
+  kOdometryStale,       // no sample for longer than the timeout
+  kOdometryResumed,
+  kZoneEntered,    // the tracker's zone changed
+  kZoneWanted,     // entered, approached, a hypothesis or pinned: to be resident
+  kZoneUnwanted,   // no longer so
+  kLoadStarted,    // admitted: charged from here on
+  kLoadDone,       // resident
+  kLoadCancelled,  // the loader was asked to give up
+  kLoadGivenUp,    // it did: no longer charged
+  kLoadFailed,     // reason: the error; no longer charged, tried again later if still wanted
+  kEvicted,
+  kBlocked,  // a wanted zone does not fit beside what must stay
+  kUnblocked,
+  kNotKeepingUp,  // the robot entered a zone that is not resident
+  kEnd,
+};
+
+// The word for it in the log ("zone_entered").
+const char* to_string(EventKind kind) noexcept;
+
+// One thing that happened, as plain integers, so that recording it costs the control thread a copy.
+// Fields that an event has no use for keep their defaults.
+struct Event {
+  EventKind kind = EventKind::kStart;
+  std::uint64_t cycle = 0;
+  std::int64_t t_ns = 0;  // since the start of the run
+  ZoneId zone = kNoZone;
+  std::uint32_t generation = 0;
+  std::uint32_t signatures = 0;          // of the zone
+  ByteCount bytes = 0;                   // charged for the zone
+  std::uint64_t charged_signatures = 0;  // of all zones, after the event
+  ByteCount charged_bytes = 0;           // everything, after the event
+  const char* reason = nullptr;          // a static word
+  bool has_pose = false;
+  std::int32_t x_mm = 0, y_mm = 0, yaw_mrad = 0;  // base_link in the map
+};
+
+// Takes events in their order. Real-time: on_event() neither blocks, allocates nor throws on the
+// robot.
+class EventSink {
+ public:
+  virtual ~EventSink() = default;
+  virtual void on_event(const Event& event) noexcept = 0;
+};
+
+// Stamps events with the cycle in which they happen.
+class EventStamper {
+ public:
+  explicit EventStamper(EventSink& sink) noexcept : sink_(sink) {}
+
+  void begin_cycle(std::uint64_t cycle, std::int64_t t_ns) noexcept {
+    cycle_ = cycle;
+    t_ns_ = t_ns;
+  }
+
+  void emit(Event event) noexcept {
+    event.cycle = cycle_;
+    event.t_ns = t_ns_;
+    sink_.on_event(event);
+  }
+
+ private:
+  EventSink& sink_;
+  std::uint64_t cycle_ = 0;
+  std::int64_t t_ns_ = 0;
+};
+
+}  // namespace zonepack

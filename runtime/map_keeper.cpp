@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/map_keeper.hpp"
+
+#include <algorithm>
+
+#include "platform/base/require.hpp"
+
+namespace zonepack {
+
+MapKeeper::MapKeeper(Residency& memory, ZoneLoader& loader, EventStamper& events,
+                     std::span<const ZoneNeed> needs, std::span<const ZoneId> pinned,
+                     const MapKeeperSettings& settings)
+    : memory_(memory),
+      loader_(loader),
+      events_(events),
+      needs_(needs),
+      pinned_(pinned),
+      settings_(settings),
+      retries_(needs.size()) {
+  ZP_REQUIRE(memory.zone_count() == needs.size());
+}
+
+void MapKeeper::collect(std::int64_t now_ns) noexcept {
+  while (const auto result = loader_.poll()) {
+    ZP_REQUIRE(result->zone == loading_);
+    loading_ = kNoZone;
+    if (result->error.code == ErrorCode::kOk) {
+      memory_.complete(result->zone, result->generation, result->slots);
+      retries_[result->zone] = {};
+      emit(EventKind::kLoadDone, result->zone);
+    } else {
+      memory_.give_up(result->zone, result->generation);
+      if (result->error.code == ErrorCode::kCancelled) {
+        emit(EventKind::kLoadGivenUp, result->zone);
+      } else {
+        fail(result->zone, result->error.code, now_ns);
+      }
+    }
+  }
+  memory_.expire_leases(now_ns);
+}
+
+void MapKeeper::fail(ZoneId zone, ErrorCode code, std::int64_t now_ns) noexcept {
+  Retry& retry = retries_[zone];
+  std::int64_t wait_ns = settings_.first_retry_ns;
+  for (std::uint32_t i = 0; i < retry.failures && wait_ns < settings_.last_retry_ns; ++i) {
+    wait_ns *= 2;
+  }
+  ++retry.failures;
+  retry.not_before_ns = now_ns + std::min(wait_ns, settings_.last_retry_ns);
+  emit(EventKind::kLoadFailed, zone, to_string(code));
+}
+
+void MapKeeper::keep(std::int64_t now_ns, std::span<const ZoneId> wanted,
+                     std::size_t urgent) noexcept {
+  ZP_REQUIRE(wanted.size() <= kMaxWanted);
+  drop_unwanted(wanted);
+  does_not_fit_ = kNoZone;
+  for (std::size_t place = 0; place < wanted.size(); ++place) {
+    see_to(place, wanted, place < urgent, now_ns);
+  }
+  keep_pinned(now_ns);
+  set_blocked(does_not_fit_);
+  std::copy(wanted.begin(), wanted.end(), wanted_.begin());
+  wanted_count_ = wanted.size();
+}
+
+bool MapKeeper::wants(std::span<const ZoneId> list, ZoneId zone) const noexcept {
+  return std::find(list.begin(), list.end(), zone) != list.end();
+}
+
+void MapKeeper::drop_unwanted(std::span<const ZoneId> wanted) noexcept {
+  // The most urgent last, which leaves it the warmest.
+  for (std::size_t i = wanted_count_; i-- > 0;) {
+    const ZoneId zone = wanted_[i];
+    if (wants(wanted, zone)) continue;
+    memory_.unprotect(zone);
+    emit(EventKind::kZoneUnwanted, zone);
+  }
+  for (const ZoneId zone : wanted) {
+    if (!wants({wanted_.data(), wanted_count_}, zone)) emit(EventKind::kZoneWanted, zone);
+  }
+  if (loading_ != kNoZone && !wants(wanted, loading_) && !memory_.pinned(loading_)) cancel_load();
+}
+
+void MapKeeper::see_to(std::size_t place, std::span<const ZoneId> wanted, bool urgent,
+                       std::int64_t now_ns) noexcept {
+  const ZoneId zone = wanted[place];
+  const bool own = place == 0;
+  memory_.protect(zone);
+  if (memory_.state(zone) != ZoneState::kAbsent || !may_start(zone, own, now_ns)) return;
+  const Purpose purpose = own ? Purpose::kOwnZone : Purpose::kApproach;
+  if (admit(zone, purpose)) return;
+  if (urgent) {
+    for (std::size_t i = wanted.size(); --i > place;) memory_.unprotect(wanted[i]);
+    if (admit(zone, purpose)) return;
+  }
+  if (does_not_fit_ == kNoZone) does_not_fit_ = zone;
+}
+
+bool MapKeeper::may_start(ZoneId zone, bool own, std::int64_t now_ns) noexcept {
+  if (now_ns < retries_[zone].not_before_ns) return false;
+  if (loading_ == kNoZone) return true;
+  if (own) cancel_load();
+  return false;
+}
+
+void MapKeeper::keep_pinned(std::int64_t now_ns) noexcept {
+  for (const ZoneId zone : pinned_) {
+    if (memory_.state(zone) != ZoneState::kAbsent || !may_start(zone, false, now_ns)) continue;
+    if (!admit(zone, Purpose::kApproach) && does_not_fit_ == kNoZone) does_not_fit_ = zone;
+  }
+}
+
+Result<std::size_t> MapKeeper::admit(ZoneId zone, Purpose purpose) noexcept {
+  const auto result = memory_.admit(zone, needs_[zone], purpose, [this](const Eviction& evicted) {
+    loader_.take_back(evicted.slots);
+    emit(EventKind::kEvicted, evicted.zone);
+  });
+  if (result) {
+    loading_ = zone;
+    loader_.load({zone, memory_.generation(zone), needs_[zone].slots});
+    emit(EventKind::kLoadStarted, zone);
+  }
+  return result;
+}
+
+void MapKeeper::cancel_load() noexcept {
+  if (!memory_.cancel(loading_)) return;
+  loader_.cancel();
+  emit(EventKind::kLoadCancelled, loading_);
+}
+
+void MapKeeper::set_blocked(ZoneId zone) noexcept {
+  if (zone == blocked_) return;
+  if (zone != kNoZone) {
+    emit(EventKind::kBlocked, zone);
+  } else {
+    emit(EventKind::kUnblocked, blocked_);
+  }
+  blocked_ = zone;
+}
+
+void MapKeeper::emit(EventKind kind, ZoneId zone, const char* reason) noexcept {
+  Event event;
+  event.kind = kind;
+  event.zone = zone;
+  event.generation = memory_.generation(zone);
+  event.signatures = needs_[zone].signatures;
+  event.bytes = needs_[zone].slots * memory_.limits().slot_bytes;
+  event.charged_signatures = memory_.signatures();
+  event.charged_bytes = memory_.charged();
+  event.reason = reason;
+  events_.emit(event);
+}
+
+}  // namespace zonepack

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "runtime/event.hpp"
+#include "runtime/memory/residency.hpp"
+#include "runtime/zone_loader.hpp"
+
+namespace zonepack {
+
+struct MapKeeperSettings {
+  // A zone that failed to load is tried again after this, doubled with every further failure.
+  std::int64_t first_retry_ns = 1'000'000'000;
+  std::int64_t last_retry_ns = 60'000'000'000;
+};
+
+// Sees to it that the wanted zones are in memory: the most urgent first, never more than fits.
+//
+// One load is under way at a time, so that the storage works for the zone needed soonest. A load
+// that nobody wants any more is cancelled; so is one that keeps the robot's own zone waiting. A
+// wanted zone that does not fit takes the room of less urgent ones; if that is not enough, it
+// waits, and blocked() says so. A zone that cannot be loaded costs only itself.
+//
+// Real-time: no allocation after construction; a cycle costs O(kMaxWanted^2 + pins) beside one
+// admission.   Threads: owned by the control thread.
+class MapKeeper {
+ public:
+  static constexpr std::size_t kMaxWanted = 16;
+
+  // needs: of every zone, by ZoneId. The pinned zones must have been accepted by Residency::pin().
+  // References and spans must outlive this object.
+  MapKeeper(Residency& memory, ZoneLoader& loader, EventStamper& events,
+            std::span<const ZoneNeed> needs, std::span<const ZoneId> pinned,
+            const MapKeeperSettings& settings = {});
+
+  // Takes the loader's results; call once a cycle, before keep().
+  void collect(std::int64_t now_ns) noexcept;
+
+  // Takes what is wanted in this cycle, most urgent first, no zone twice, at most kMaxWanted. The
+  // first is the robot's own zone; those after the first `urgent` are only possible.
+  void keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent) noexcept;
+
+  // A wanted zone did not fit in the last cycle.
+  bool blocked() const noexcept { return blocked_ != kNoZone; }
+
+  // What this object's tables take from the budget.
+  static ByteCount table_bytes(std::size_t zones) noexcept { return zones * sizeof(Retry); }
+
+ private:
+  struct Retry {
+    std::int64_t not_before_ns = 0;
+    std::uint32_t failures = 0;
+  };
+
+  bool wants(std::span<const ZoneId> list, ZoneId zone) const noexcept;
+  void drop_unwanted(std::span<const ZoneId> wanted) noexcept;
+  void see_to(std::size_t place, std::span<const ZoneId> wanted, bool urgent,
+              std::int64_t now_ns) noexcept;
+  bool may_start(ZoneId zone, bool own, std::int64_t now_ns) noexcept;
+  void keep_pinned(std::int64_t now_ns) noexcept;
+  Result<std::size_t> admit(ZoneId zone, Purpose purpose) noexcept;
+  void cancel_load() noexcept;
+  void fail(ZoneId zone, ErrorCode code, std::int64_t now_ns) noexcept;
+  void set_blocked(ZoneId zone) noexcept;
+  void emit(EventKind kind, ZoneId zone, const char* reason = nullptr) noexcept;
+
+  Residency& memory_;
+  ZoneLoader& loader_;
+  EventStamper& events_;
+  std::span<const ZoneNeed> needs_;
+  std::span<const ZoneId> pinned_;
+  MapKeeperSettings settings_;
+  std::vector<Retry> retries_;
+  std::array<ZoneId, kMaxWanted> wanted_{};
+  std::size_t wanted_count_ = 0;
+  ZoneId loading_ = kNoZone;
+  ZoneId blocked_ = kNoZone;
+  ZoneId does_not_fit_ = kNoZone;  // the most urgent one of this cycle
+};
+
+}  // namespace zonepack

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "platform/base/result.hpp"
+#include "runtime/memory/slot_pool.hpp"
+#include "runtime/pack_format/ids.hpp"
+
+namespace zonepack {
+
+struct LoadRequest {
+  ZoneId zone = kNoZone;
+  std::uint32_t generation = 0;
+  std::uint32_t slots = 0;  // to take from the free ones
+};
+
+// What became of a request. Without error the zone is decoded and its slots are the receiver's;
+// with an error (kCancelled: given up on request) the loader has put them back among the free ones.
+struct LoadResult {
+  ZoneId zone = kNoZone;
+  std::uint32_t generation = 0;
+  Error error;
+  SlotChain slots;
+};
+
+// The loader as the control thread sees it: messages to it and from it, each in their order. It
+// owns the free slots; because slots are charged before they are asked for, and given back before
+// others are charged for them, there are always enough.
+//
+// Real-time: no call blocks, allocates, reads a file or fails; there is room for every message, as
+// at most one load is under way and a slot is in one place only.   Threads: called by the control
+// thread.
+class ZoneLoader {
+ public:
+  virtual ~ZoneLoader() = default;
+
+  virtual void load(const LoadRequest& request) noexcept = 0;
+
+  // Asks to give up the load under way; its result comes all the same, at the latest one chunk
+  // later.
+  virtual void cancel() noexcept = 0;
+
+  // Takes the slots of an evicted zone among the free ones.
+  virtual void take_back(SlotChain slots) noexcept = 0;
+
+  // The next result, if one has come.
+  virtual std::optional<LoadResult> poll() noexcept = 0;
+};
+
+}  // namespace zonepack
