@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/replay/map_model.hpp"
+
+#include <algorithm>
+
+#include "runtime/pack_format/accounting.hpp"
+
+namespace zonepack {
+namespace {
+
+constexpr ByteCount kChargedPerSlot = kSlotBytes + kTableBytesPerSlot;
+
+NeedSum pair_of(const CatalogZone& a, const CatalogZone& b) {
+  return {std::uint64_t{a.slots} + b.slots, std::uint64_t{a.signatures} + b.signatures};
+}
+
+// The most slots and the most signatures of a zone with one neighbour; they may be different pairs.
+NeedSum largest_pair(const Catalog& catalog) {
+  NeedSum most;
+  const auto raise = [&most](NeedSum need) {
+    most.slots = std::max(most.slots, need.slots);
+    most.signatures = std::max(most.signatures, need.signatures);
+  };
+  for (const CatalogZone& zone : catalog.zones) raise({zone.slots, zone.signatures});
+  for (const CatalogPortal& portal : catalog.portals) {
+    raise(pair_of(catalog.zones[portal.zone_a], catalog.zones[portal.zone_b]));
+  }
+  return most;
+}
+
+std::string remedy(const Catalog& catalog) {
+  return "the smallest budget for this map is " + format_byte_count(catalog.smallest.bytes) +
+         " (zonepack plan tells what sets it)";
+}
+
+}  // namespace
+
+ZoneGraph graph_of(const Catalog& catalog) {
+  std::vector<GraphZone> zones;
+  std::vector<GraphPortal> portals;
+  zones.reserve(catalog.zones.size());
+  portals.reserve(catalog.portals.size());
+  for (const CatalogZone& zone : catalog.zones) zones.push_back({zone.name, zone.polygon});
+  for (const CatalogPortal& portal : catalog.portals) {
+    portals.push_back({portal.zone_a, portal.zone_b, portal.segment});
+  }
+  return ZoneGraph(std::move(zones), portals);
+}
+
+std::vector<ZoneNeed> needs_of(const Catalog& catalog) {
+  std::vector<ZoneNeed> needs;
+  for (const CatalogZone& zone : catalog.zones) needs.push_back({zone.slots, zone.signatures});
+  return needs;
+}
+
+std::vector<LoadWork> work_of(const Catalog& catalog) {
+  std::vector<LoadWork> work;
+  for (const CatalogZone& zone : catalog.zones) {
+    work.push_back({zone.stored_bytes, zone.decoded_bytes});
+  }
+  return work;
+}
+
+std::vector<float> load_times_of(const std::vector<LoadWork>& work, const LoadRates& rates,
+                                 std::int64_t period_ns) {
+  std::vector<float> times;
+  for (const LoadWork& zone : work) {
+    const std::int64_t ns = load_time_ns(zone, rates) + 2 * period_ns;
+    times.push_back(static_cast<float>(static_cast<double>(ns) / 1e9));
+  }
+  return times;
+}
+
+ResidencyLimits limits_for(const Catalog& catalog, std::optional<ByteCount> budget,
+                           std::uint64_t max_signatures, const std::vector<ZoneId>& pinned) {
+  ByteCount smallest = catalog.smallest.bytes;
+  for (const ZoneId zone : pinned) smallest += catalog.zones[zone].slots * kChargedPerSlot;
+  ResidencyLimits limits;
+  limits.budget = budget.value_or(smallest);
+  limits.fixed = catalog.fixed_bytes;
+  limits.slot_bytes = kChargedPerSlot;
+  limits.max_signatures = max_signatures;
+  limits.largest_pair = largest_pair(catalog);
+  return limits;
+}
+
+std::optional<std::string> refusal(const Catalog& catalog, const ResidencyLimits& limits) {
+  if (limits.fixed > limits.budget) {
+    return "budget " + format_byte_count(limits.budget) + ": tables and read buffers alone take " +
+           std::to_string(limits.fixed) + " bytes; " + remedy(catalog);
+  }
+  const std::uint64_t slots =
+      Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes);
+  for (const CatalogZone& zone : catalog.zones) {
+    if (zone.slots > slots) {
+      return "zone " + zone.name + " takes " + std::to_string(zone.slots * limits.slot_bytes) +
+             " bytes beside " + std::to_string(limits.fixed) +
+             " for tables and buffers, over the budget of " + format_byte_count(limits.budget) +
+             "; " + remedy(catalog);
+    }
+    if (limits.max_signatures > 0 && zone.signatures > limits.max_signatures) {
+      return "zone " + zone.name + " has " + std::to_string(zone.signatures) +
+             " signatures, over the limit of " + std::to_string(limits.max_signatures) +
+             "; the smallest limit for this map is " +
+             std::to_string(limits.largest_pair.signatures) + " signatures";
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> tightness(const Catalog& catalog, const ResidencyLimits& limits) {
+  const std::uint64_t slots =
+      Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes);
+  for (const CatalogPortal& portal : catalog.portals) {
+    const CatalogZone &a = catalog.zones[portal.zone_a], &b = catalog.zones[portal.zone_b];
+    const NeedSum pair = pair_of(a, b);
+    const std::string both = "zones " + a.name + " and " + b.name + " do not fit together";
+    if (pair.slots > slots) {
+      return both + " in " + format_byte_count(limits.budget) +
+             ": the robot will enter one before it is loaded; " + remedy(catalog);
+    }
+    if (limits.max_signatures > 0 && pair.signatures > limits.max_signatures) {
+      return both + " in " + std::to_string(limits.max_signatures) +
+             " signatures: the robot will enter one before it is loaded; the smallest limit for "
+             "this map is " +
+             std::to_string(limits.largest_pair.signatures) + " signatures";
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace zonepack

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/replay/pack_filler.hpp"
+
+#include "runtime/map/loader.hpp"
+
+namespace zonepack {
+
+PackFiller::PackFiller(const Catalog& catalog, std::uint32_t slots)
+    : catalog_(catalog),
+      arena_(slots, kSlotBytes),
+      read_buffer_(kReadBufferBytes),
+      noted_(catalog.zones.size()) {
+  places_.reserve(slots);
+}
+
+Result<void> PackFiller::fill(ZoneId zone, std::span<const SlotIndex> slots) {
+  places_.clear();
+  for (const SlotIndex slot : slots) places_.push_back(arena_.slot(slot).data());
+  const Result<void> loaded = load(zone);
+  if (!loaded) note(zone, loaded.error());
+  return loaded;
+}
+
+Result<void> PackFiller::load(ZoneId zone) {
+  Result<ZoneLoad> load = ZoneLoad::begin(catalog_, zone, places_, read_buffer_);
+  if (!load) return load.error();
+  for (;;) {
+    const Result<bool> more = load->step();
+    if (!more) return more.error();
+    if (!*more) return {};
+  }
+}
+
+void PackFiller::note(ZoneId zone, Error error) {
+  if (noted_[zone]) return;
+  noted_[zone] = true;
+  const CatalogZone& known = catalog_.zones[zone];
+  faults_.push_back("zone " + known.name + " cannot be loaded: " + catalog_.folder + "/" +
+                    known.pack + ": " + to_string(error.code) + " (" +
+                    std::to_string(error.detail) +
+                    "); build the map again or copy the pack again, zonepack verify tells more");
+}
+
+}  // namespace zonepack

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "runtime/map/catalog.hpp"
+#include "runtime/memory/arena.hpp"
+#include "runtime/replay/modelled_loader.hpp"
+
+namespace zonepack {
+
+// Loads zones from their packs into an arena, as the robot does, so that damage shows.
+class PackFiller final : public ZoneFiller {
+ public:
+  PackFiller(const Catalog& catalog, std::uint32_t slots);
+
+  Result<void> fill(ZoneId zone, std::span<const SlotIndex> slots) override;
+
+  // A complete message for each zone whose pack could not be loaded, once.
+  const std::vector<std::string>& faults() const noexcept { return faults_; }
+
+ private:
+  Result<void> load(ZoneId zone);
+  void note(ZoneId zone, Error error);
+
+  const Catalog& catalog_;
+  Arena arena_;
+  std::vector<std::byte> read_buffer_;
+  std::vector<std::byte*> places_;
+  std::vector<bool> noted_;
+  std::vector<std::string> faults_;
+};
+
+}  // namespace zonepack

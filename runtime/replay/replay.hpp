@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform/base/byte_count.hpp"
+#include "platform/sim/sim_can_bus.hpp"
+#include "runtime/cycle.hpp"
+#include "runtime/map/catalog.hpp"
+#include "runtime/replay/modelled_loader.hpp"
+#include "runtime/replay/run_files.hpp"
+#include "runtime/replay/run_summary.hpp"
+#include "runtime/replay/run_trace.hpp"
+
+namespace zonepack {
+
+// A recorded run, and the limits to hold while driving it again.
+struct ReplayInput {
+  const Catalog& catalog;
+  CanFrameSource& frames;
+  std::vector<PoseCorrection> corrections{};  // in order of reception
+  const TruthTrack* truth = nullptr;          // for the figures only, unless start_at_truth
+  std::optional<Pose2> start{};               // nothing: wait for the first fix
+  bool start_at_truth = false;
+  CycleConfig cycle{};
+  std::int64_t period_ns = 10'000'000;
+  std::uint32_t most_frames = 64;     // taken from the bus in one cycle
+  std::optional<ByteCount> budget{};  // nothing: the smallest that the map allows
+  std::uint64_t max_signatures = 0;
+  std::vector<std::string> pinned{};
+  LoadRates rates{};
+  std::string events_path{};  // empty: none
+  bool load_packs = true;     // false: zones are accounted for, no pack is read
+};
+
+struct ReplayResult {
+  RunSummary summary;
+  RunTrace trace;
+  std::vector<std::string> faults;    // complete messages: zones that could not be loaded
+  std::vector<std::string> warnings;  // complete messages
+};
+
+// Drives the recording through the cycle, on simulated time: a cycle every period_ns from the first
+// frame to the last; frames enter at their stamp, corrections when received, loads when the model
+// says. Nothing is measured: the same input gives the same result everywhere.
+// Nothing on error; `fault` says why in a complete message.
+std::optional<ReplayResult> replay(ReplayInput input, std::string& fault);
+
+}  // namespace zonepack

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/replay/run_recorder.hpp"
+
+#include <algorithm>
+
+namespace zonepack {
+namespace {
+
+constexpr double kWrongDepth_m = 0.3;
+constexpr double kSamplePeriod_s = 0.1;
+
+// The value that this share of all is not above (nearest rank).
+double percentile(const std::vector<float>& sorted, double share) {
+  const auto rank = static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5);
+  return static_cast<double>(sorted[rank]);
+}
+
+}  // namespace
+
+RunRecorder::RunRecorder(const ZoneGraph& graph, std::span<const ZoneNeed> needs,
+                         const TruthTrack* truth, std::int64_t period_ns, EventSink& log)
+    : graph_(graph), needs_(needs), truth_(truth), period_ns_(period_ns), log_(log) {}
+
+void RunRecorder::on_event(const Event& event) noexcept {
+  log_.on_event(event);
+  trace_.events.push_back(
+      {static_cast<double>(event.t_ns) * 1e-9, to_string(event.kind), event.zone});
+}
+
+void RunRecorder::after_cycle(std::int64_t now_ns, const CycleState& state,
+                              const Residency& memory) {
+  if (cycles_ == 0) start_ns_ = now_ns;
+  now_ns_ = now_ns;
+  ++cycles_;
+  const Recount charged = recount(memory);
+  check_limits(charged, memory);
+  watch_zone(state, memory);
+  blocked_cycles_ += state.blocked;
+  if (true_pose_ && state.pose.valid) {
+    const Pose2 &truth = *true_pose_, &estimate = state.pose.T_map_base;
+    errors_m_.push_back(static_cast<float>(
+        distance_m(Point2{truth.x_m, truth.y_m}, Point2{estimate.x_m, estimate.y_m})));
+  }
+  keep_sample(state, charged, memory);
+}
+
+RunRecorder::Recount RunRecorder::recount(const Residency& memory) const {
+  Recount sum;
+  for (ZoneId zone = 0; zone < needs_.size(); ++zone) {
+    if (memory.state(zone) == ZoneState::kAbsent) continue;
+    sum.slots += needs_[zone].slots;
+    sum.signatures += needs_[zone].signatures;
+  }
+  return sum;
+}
+
+void RunRecorder::check_limits(const Recount& charged, const Residency& memory) {
+  const ResidencyLimits& limits = memory.limits();
+  peak_.slots = std::max(peak_.slots, charged.slots);
+  peak_.signatures = std::max(peak_.signatures, charged.signatures);
+  const bool over_bytes = limits.fixed > limits.budget ||
+                          charged.slots * limits.slot_bytes > limits.budget - limits.fixed;
+  const bool over_signatures =
+      limits.max_signatures > 0 && charged.signatures > limits.max_signatures;
+  violations_ += over_bytes || over_signatures;
+}
+
+void RunRecorder::watch_zone(const CycleState& state, const Residency& memory) {
+  true_pose_ = truth_ != nullptr ? truth_->at(now_ns_) : std::nullopt;
+  ZoneId own = state.zone;
+  if (true_pose_) {
+    const Point2 place{true_pose_->x_m, true_pose_->y_m};
+    const ZoneId holding = graph_.zone_at(place);
+    if (holding != kNoZone) true_zone_ = holding;
+    own = true_zone_;
+    wrong_cycles_ += true_zone_ != kNoZone && state.zone != kNoZone && state.zone != true_zone_ &&
+                     graph_.depth_m(true_zone_, place) > kWrongDepth_m;
+  } else {
+    true_zone_ = kNoZone;
+  }
+  if (!first_resident_ && memory.counters().zones_loaded > 0) first_resident_ = cycles_ - 1;
+  absent_ = first_resident_ && own != kNoZone && !memory.resident(own);
+  absent_cycles_ += absent_;
+}
+
+void RunRecorder::keep_sample(const CycleState& state, const Recount& charged,
+                              const Residency& memory) {
+  TraceSample sample;
+  sample.t_s = static_cast<double>(now_ns_ - start_ns_) * 1e-9;
+  sample.pose_valid = state.pose.valid;
+  sample.pose_trusted = state.pose.trusted;
+  sample.estimate = state.pose.T_map_base;
+  sample.has_truth = true_pose_.has_value();
+  if (true_pose_) sample.truth = *true_pose_;
+  sample.tracked_zone = state.zone;
+  sample.true_zone = true_zone_;
+  sample.zone_absent = absent_;
+  sample.blocked = state.blocked;
+  sample.charged_bytes = memory.limits().fixed + charged.slots * memory.limits().slot_bytes;
+  sample.charged_signatures = charged.signatures;
+  sample.resident_signatures = memory.resident_sum().signatures;
+  sample.signatures_loaded = memory.counters().signatures_loaded;
+  sample.signatures_unloaded = memory.counters().signatures_unloaded;
+  if (!trace_.samples.empty()) {
+    const TraceSample& last = trace_.samples.back();
+    const bool same = last.tracked_zone == sample.tracked_zone &&
+                      last.true_zone == sample.true_zone &&
+                      last.zone_absent == sample.zone_absent && last.blocked == sample.blocked &&
+                      last.charged_bytes == sample.charged_bytes &&
+                      last.charged_signatures == sample.charged_signatures &&
+                      last.signatures_loaded == sample.signatures_loaded &&
+                      last.signatures_unloaded == sample.signatures_unloaded;
+    if (same && sample.t_s - last.t_s < kSamplePeriod_s) return;
+  }
+  trace_.samples.push_back(sample);
+}
+
+double RunRecorder::seconds(std::uint64_t cycles) const noexcept {
+  return static_cast<double>(cycles) * static_cast<double>(period_ns_) / 1e9;
+}
+
+void RunRecorder::summarise(const Residency& memory, RunSummary& summary) const {
+  const ResidencyLimits& limits = memory.limits();
+  const ResidencyCounters& counters = memory.counters();
+  summary.budget_bytes = limits.budget;
+  summary.peak_charged_bytes = limits.fixed + peak_.slots * limits.slot_bytes;
+  summary.budget_violations = violations_;
+  summary.max_signatures = limits.max_signatures;
+  summary.peak_signatures = peak_.signatures;
+  summary.signatures_loaded = counters.signatures_loaded;
+  summary.signatures_unloaded = counters.signatures_unloaded;
+  summary.zones_loaded = counters.zones_loaded;
+  summary.zones_unloaded = counters.zones_unloaded;
+  summary.start_s = seconds(first_resident_.value_or(cycles_));
+  summary.zone_absent_s = seconds(absent_cycles_);
+  summary.blocked_s = seconds(blocked_cycles_);
+  summary.wrong_zone_s = seconds(wrong_cycles_);
+  summary.cycles = cycles_;
+  if (!errors_m_.empty()) {
+    std::vector<float> sorted = errors_m_;
+    std::sort(sorted.begin(), sorted.end());
+    summary.pose_error_m = PoseError{percentile(sorted, 0.5), percentile(sorted, 0.95),
+                                     static_cast<double>(sorted.back())};
+  }
+}
+
+}  // namespace zonepack

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/replay/summary_text.hpp"
+
+#include <array>
+#include <charconv>
+#include <string_view>
+#include <type_traits>
+
+#include "runtime/event_log.hpp"
+
+namespace zonepack {
+namespace {
+
+std::string shortest(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
+std::string fixed(double value, int decimals) {
+  std::array<char, 64> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
+                                 std::chars_format::fixed, decimals)
+                       .ptr;
+  return {text.data(), end};
+}
+
+// "2441160 bytes (2.33 MiB)".
+std::string bytes_text(ByteCount bytes) {
+  return std::to_string(bytes) + " bytes (" +
+         fixed(static_cast<double>(bytes) / static_cast<double>(kMiB), 2) + " MiB)";
+}
+
+class JsonObject {
+ public:
+  template <typename T>
+  void add(std::string_view key, T value) {
+    text_ += text_.empty() ? "{\n  " : ",\n  ";
+    text_ += json_quoted(key) + ": ";
+    if constexpr (std::is_integral_v<T>) {
+      text_ += std::to_string(value);
+    } else if constexpr (std::is_floating_point_v<T>) {
+      text_ += shortest(value);
+    } else {
+      text_ += value;
+    }
+  }
+  std::string finish() { return text_ + "\n}\n"; }
+
+ private:
+  std::string text_;
+};
+
+std::string error_json(const std::optional<PoseError>& error) {
+  if (!error) return "null";
+  return "{\"p50\": " + shortest(error->p50) + ", \"p95\": " + shortest(error->p95) +
+         ", \"max\": " + shortest(error->max) + "}";
+}
+
+}  // namespace
+
+std::string summary_json(const RunSummary& s) {
+  JsonObject json;
+  json.add("budget_bytes", s.budget_bytes);
+  json.add("peak_charged_bytes", s.peak_charged_bytes);
+  json.add("budget_violations", s.budget_violations);
+  json.add("max_signatures", s.max_signatures);
+  json.add("peak_signatures", s.peak_signatures);
+  json.add("signatures_loaded", s.signatures_loaded);
+  json.add("signatures_unloaded", s.signatures_unloaded);
+  json.add("zones_loaded", s.zones_loaded);
+  json.add("zones_unloaded", s.zones_unloaded);
+  json.add("bytes_loaded", s.bytes_loaded);
+  json.add("zone_switches", s.zone_switches);
+  json.add("start_s", s.start_s);
+  json.add("zone_absent_s", s.zone_absent_s);
+  json.add("blocked_s", s.blocked_s);
+  json.add("wrong_zone_s", s.wrong_zone_s);
+  json.add("pose_error_m", error_json(s.pose_error_m));
+  json.add("cycles", s.cycles);
+  json.add("can_frames", s.can_frames);
+  json.add("can_rejected", s.can_rejected);
+  json.add("corrections_used", s.corrections_used);
+  json.add("corrections_rejected", s.corrections_rejected);
+  json.add("event_log_hash", json_quoted(s.event_log_hash));
+  return json.finish();
+}
+
+std::string summary_table(const RunSummary& s) {
+  std::string text;
+  const auto row = [&text](std::string_view name, const std::string& value) {
+    text += "  ";
+    text += name;
+    text.append(name.size() < 26 ? 26 - name.size() : 1, ' ');
+    text += value + '\n';
+  };
+  const auto count = [](std::uint64_t n) { return std::to_string(n); };
+  row("budget", bytes_text(s.budget_bytes));
+  row("most charged", bytes_text(s.peak_charged_bytes));
+  row("cycles over a limit", count(s.budget_violations) + " of " + count(s.cycles));
+  row("most signatures", count(s.peak_signatures) +
+                             (s.max_signatures > 0 ? ", limit " + count(s.max_signatures) : ""));
+  row("signatures loaded",
+      count(s.signatures_loaded) + ", unloaded " + count(s.signatures_unloaded));
+  row("zones loaded", count(s.zones_loaded) + ", unloaded " + count(s.zones_unloaded));
+  row("read from storage", bytes_text(s.bytes_loaded));
+  row("zone switches", count(s.zone_switches));
+  row("first zone resident", "after " + fixed(s.start_s, 2) + " s");
+  row("own zone absent", fixed(s.zone_absent_s, 2) + " s");
+  row("waiting for room", fixed(s.blocked_s, 2) + " s");
+  row("in a wrong zone", fixed(s.wrong_zone_s, 2) + " s");
+  if (s.pose_error_m) {
+    row("pose error", "median " + fixed(s.pose_error_m->p50, 3) + " m, 95 % " +
+                          fixed(s.pose_error_m->p95, 3) + " m, most " +
+                          fixed(s.pose_error_m->max, 3) + " m");
+  }
+  row("CAN frames", count(s.can_frames) + ", rejected " + count(s.can_rejected));
+  row("corrections used",
+      count(s.corrections_used) + ", rejected " + count(s.corrections_rejected));
+  row("event log", s.event_log_hash);
+  return text;
+}
+
+}  // namespace zonepack
