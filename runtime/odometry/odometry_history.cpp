@@ -89,7 +89,7 @@ void OdometryHistory::split(std::uint64_t index, std::int64_t t_ns) noexcept {
 std::uint64_t OdometryHistory::fill_drift(std::int64_t from_ns, std::int64_t to_ns,
                                           const UncertainPose& motion) noexcept {
   std::uint64_t first = newest() + 1;
-  while (first - 1 > oldest() && at(first - 1).drift) --first;
+  while (first - 1 > oldest() && at(first - 1).drift && at(first - 2).t_ns >= from_ns) --first;
   std::uint64_t before = first - 1;
   if (full() && before == oldest()) from_ns = std::max(from_ns, at(before).t_ns);
   const double length = static_cast<double>(to_ns - from_ns);

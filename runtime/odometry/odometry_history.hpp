@@ -55,11 +55,12 @@ class OdometryHistory {
   // and all from the old one on have numbers one higher. The oldest entry goes when full.
   void split(std::uint64_t index, std::int64_t t_ns) noexcept;
 
-  // Spreads a motion that took from from_ns to to_ns, at constant speed, over the entries of
-  // missing odometry at the end, and adds an entry with what is left of it. Of a motion that began
-  // before the first of these entries only the part since then counts, unless the entries before
-  // were dropped for want of room. States are not replayed. Returns the entry before the first that
-  // changed.
+  // Spreads a motion that took from from_ns to to_ns, at constant speed, over those entries of
+  // missing odometry at the end that began then or later, and adds an entry with what is left of
+  // it. Of a motion that began before the first of them only the part since then counts, unless the
+  // entries before were dropped for want of room. When fixes were used in between, the speed was
+  // hardly constant: then the entries keep the uncertainty that they had. States are not replayed.
+  // Returns the entry before the first that changed.
   std::uint64_t fill_drift(std::int64_t from_ns, std::int64_t to_ns,
                            const UncertainPose& motion) noexcept;
 

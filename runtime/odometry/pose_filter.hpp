@@ -70,9 +70,9 @@ struct PoseFilterCounters {
 // its own. Once trusted, fixes outside the gate are refused; when reinit_fixes of them agree with
 // each other, with none accepted in between, the filter moves there: it cannot be locked out.
 //
-// Real-time: all memory is taken in the constructor. predict() is O(1); correct() goes through the
-// history at most kMaxHypotheses + 1 times (250 entries with the default settings).   Threads: one.
-// Bit-exact: see det_math.hpp.
+// Real-time: all memory is taken in the constructor. predict() is O(1); correct() and the end
+// of a pause go through the history at most 2 * kMaxHypotheses + 2 times (252 entries with the
+// default settings).   Threads: one. Bit-exact: see det_math.hpp.
 class PoseFilter {
  public:
   explicit PoseFilter(const PoseFilterSettings& settings);

@@ -388,6 +388,20 @@ TEST(PoseFilter, TheMotionOfAPauseIsPutWhereItBelongs) {
   }
 }
 
+TEST(PoseFilter, DoubtFromBeforeTheFirstSampleStays) {
+  PoseFilter filter({});
+  filter.start_at(0, {}, 0.1, 0.1);
+  for (int i = 1; i <= 400; ++i) filter.drift_until(i * 10 * kMs);
+  const double before = position_sigma_m(filter.estimate(4000 * kMs).covariance);
+  EXPECT_GT(before, 0.5);
+  OdometryIncrement first;
+  first.from_ns = 4000 * kMs;
+  first.to_ns = 4020 * kMs;
+  first.motion.pose = {0.02, 0, 0};
+  filter.predict(first);
+  EXPECT_GE(position_sigma_m(filter.estimate(4020 * kMs).covariance), before);
+}
+
 TEST(PoseFilter, TheEstimateIsCarriedOnToNow) {
   Drive drive;
   drive.trust();
