@@ -12,6 +12,7 @@ namespace {
 using report::Fact;
 using report::format_bytes;
 using report::format_count;
+using report::format_fixed;
 using report::format_number;
 using report::format_seconds;
 using report::Report;
@@ -137,14 +138,14 @@ void add_zone_table(const RunTrace& trace, Report& page) {
   report::Table table{
       "Zones visited",
       "What each zone charges while it is in memory.",
-      {{"Zone"}, {"Type"}, {"Signatures", true}, {"Charged bytes", true}, {"Time inside", true}},
+      {{"Zone"}, {"Type"}, {"Signatures", true}, {"Charged bytes", true}, {"Seconds inside", true}},
       {}};
   const std::vector<double> stays = stays_s(trace);
   for (std::size_t i = 0; i < trace.zones.size(); ++i) {
     const TraceZone& zone = trace.zones[i];
     if (stays[i] <= 0) continue;
     table.rows.push_back({zone.name, zone.zone_type, format_count(zone.signatures),
-                          format_count(zone.charged_bytes), format_seconds(stays[i])});
+                          format_count(zone.charged_bytes), format_fixed(stays[i], 1)});
   }
   if (!table.rows.empty()) page.tables.push_back(std::move(table));
 }
