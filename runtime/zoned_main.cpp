@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "runtime/replay/replay_command.hpp"
+#include "runtime/report/report.hpp"
 
 namespace {
 
@@ -13,6 +14,11 @@ void add_replay(CLI::App& app, ReplayArguments& arguments, int& exit_code) {
       "replay", "drives a recorded run through the robot's own cycle, on simulated time");
   const auto file = [&replay](const char* name, std::string& target, const char* help) {
     return replay.add_option(name, target, help)->type_name("FILE");
+  };
+  const auto drawing = [&file](const char* name, std::string& target, const char* help) {
+    file(name, target, help)->check([](const std::string& path) {
+      return zonepack::report::fault_of_report_name(path).value_or(std::string());
+    });
   };
   file("--config", arguments.config, "settings of the robot (YAML)")->required();
   replay.add_option("--map", arguments.map, "map folder; else map.path of the settings")
@@ -56,8 +62,10 @@ void add_replay(CLI::App& app, ReplayArguments& arguments, int& exit_code) {
       ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{1'000'000'000'000}));
   file("--events", arguments.events, "write the event log, one JSON object a line");
   file("--json", arguments.json, "write the summary as JSON ('-': standard output)");
-  file("--report", arguments.report, "draw the run: .html, .svg or .png");
-  file("--baseline", arguments.baseline, "RTAB-Map's own curve of this run (CSV), for the report");
+  drawing("--report", arguments.report, "draw the run: .html, .svg or .png");
+  drawing("--picture", arguments.picture, "draw its route and loading curves only");
+  file("--baseline", arguments.baseline,
+       "RTAB-Map's own curve of this run (CSV), to draw beside ours");
   replay.callback([&] { exit_code = zonepack::run_replay(arguments); });
 }
 

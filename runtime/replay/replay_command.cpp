@@ -132,10 +132,15 @@ std::optional<std::string> write_results(const ReplayArguments& arguments, const
       }
     }
   }
+  const RunReportInput run{inputs.catalog.folder, arguments.can, result.summary, result.trace,
+                           inputs.baseline};
+  if (!arguments.picture.empty()) {
+    if (auto problem = report::write_report(arguments.picture, make_run_picture(run))) {
+      return problem;
+    }
+  }
   if (arguments.report.empty()) return std::nullopt;
-  const RunReportInput report{inputs.catalog.folder, arguments.can, result.summary, result.trace,
-                              inputs.baseline};
-  return report::write_report(arguments.report, make_run_report(report));
+  return report::write_report(arguments.report, make_run_report(run));
 }
 
 }  // namespace
