@@ -63,7 +63,7 @@ void add_replay(CLI::App& app, ReplayArguments& arguments, int& exit_code) {
   file("--events", arguments.events, "write the event log, one JSON object a line");
   file("--json", arguments.json, "write the summary as JSON ('-': standard output)");
   drawing("--report", arguments.report, "draw the run: .html, .svg or .png");
-  drawing("--picture", arguments.picture, "draw its route and loading curves only");
+  drawing("--picture", arguments.picture, "draw only its route, loading curves and bytes");
   file("--baseline", arguments.baseline,
        "RTAB-Map's own curve of this run (CSV), to draw beside ours");
   replay.callback([&] { exit_code = zonepack::run_replay(arguments); });

@@ -28,7 +28,7 @@ struct ReplayArguments {
   std::optional<std::uint64_t> max_signatures;  // over the settings
   std::optional<std::uint64_t> storage_rate;    // over the settings
   std::string events, json, report;             // json "-": standard output
-  std::string picture;                          // route and loading curves only
+  std::string picture;                          // the small picture
   std::string baseline;                         // RTAB-Map's own curve, for both
 };
 

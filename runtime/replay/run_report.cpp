@@ -169,12 +169,16 @@ Report make_run_report(const RunReportInput& input) {
 
 Report make_run_picture(const RunReportInput& input) {
   const RunTrace& trace = input.trace;
-  report::Chart chart = loading_chart(trace, input.baseline);
-  chart.plot_height_px = 140;
+  report::Chart loading = loading_chart(trace, input.baseline);
+  report::Chart bytes = bytes_chart(trace);
+  loading.plot_height_px = 140;
+  bytes.plot_height_px = 110;
   Report page;
+  page.headline = headline(input.summary);
   page.figures.push_back({"", "", report::draw_floor_plan(route_plan(trace, zone_colors(trace)))});
   page.figures.push_back(
-      {"Signatures loaded and unloaded since the start", "", report::draw_chart(chart)});
+      {"Signatures loaded and unloaded since the start", "", report::draw_chart(loading)});
+  page.figures.push_back({"Bytes charged", "", report::draw_chart(bytes)});
   return page;
 }
 

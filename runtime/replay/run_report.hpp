@@ -24,7 +24,8 @@ struct RunReportInput {
 
 report::Report make_run_report(const RunReportInput& input);
 
-// The same run in one small picture, for a page of one's own: the route and the loading curves.
+// The same run in one small picture, for a page of one's own: the route, the loading curves, the
+// bytes against the budget.
 report::Report make_run_picture(const RunReportInput& input);
 
 }  // namespace zonepack

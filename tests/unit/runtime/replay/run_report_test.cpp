@@ -168,13 +168,13 @@ TEST(RunReport, OfARunWithoutSamplesIsStillAPage) {
   EXPECT_EQ(to_html(page).find("nan"), std::string::npos);
 }
 
-TEST(RunReport, ThePictureIsTheRouteAndTheLoadingCurves) {
+TEST(RunReport, ThePictureHoldsTheRouteAndTheCurves) {
   const RunSummary s = summary();
   const RunTrace trace = three_rooms();
   const report::Report page = make_run_picture({"map", "can0.log", s, trace, kNoBaseline});
   const std::string svg = report::to_sheet(page).file_text();
   EXPECT_EQ(XmlCheck::fault_of(svg), "");
-  EXPECT_EQ(page.figures.size(), 2u);
+  EXPECT_EQ(page.figures.size(), 3u);
   EXPECT_EQ(count_of(svg, ">portal</text>"), 1u);
   EXPECT_EQ(count_of(svg, ">unloaded</text>"), 1u);
 }
