@@ -3,6 +3,11 @@
 
 add_test(NAME system/include_arrows
          COMMAND ${CMAKE_CURRENT_LIST_DIR}/include_arrows_test.sh ${PROJECT_SOURCE_DIR})
+if(TARGET zonepack AND TARGET zoned)
+  add_test(NAME system/report
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/report_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+endif()
 if(TARGET zonepack)
   add_test(NAME system/install_and_find_package
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/install_test.sh ${PROJECT_BINARY_DIR}
