@@ -75,8 +75,10 @@ ResidencyLimits limits_for(const Catalog& catalog, std::optional<ByteCount> budg
                            std::uint64_t max_signatures, const std::vector<ZoneId>& pinned) {
   ByteCount smallest = catalog.smallest.bytes;
   for (const ZoneId zone : pinned) smallest += catalog.zones[zone].slots * kChargedPerSlot;
+  ByteCount whole = catalog.fixed_bytes;
+  for (const CatalogZone& zone : catalog.zones) whole += zone.slots * kChargedPerSlot;
   ResidencyLimits limits;
-  limits.budget = budget.value_or(smallest);
+  limits.budget = budget.value_or(max_signatures > 0 ? whole : smallest);
   limits.fixed = catalog.fixed_bytes;
   limits.slot_bytes = kChargedPerSlot;
   limits.max_signatures = max_signatures;

@@ -29,7 +29,7 @@ struct PayloadChoice {
 };
 
 struct MemorySettings {
-  std::optional<ByteCount> budget;   // nothing: the smallest that the map allows
+  std::optional<ByteCount> budget;   // nothing: see limits_for()
   std::uint64_t max_signatures = 0;  // 0: no such limit
   PayloadChoice payload;
   std::vector<std::string> pinned;  // names of zones that stay

@@ -48,7 +48,7 @@ struct Kind {
   static std::string shown(bool value) { return value ? "true" : "false"; }
   static std::string shown(const std::string& value) { return value.empty() ? "-" : value; }
   static std::string shown(const std::vector<std::string>&) { return "[]"; }
-  static std::string shown(const std::optional<ByteCount>&) { return "the map's smallest"; }
+  static std::string shown(const std::optional<ByteCount>&) { return "the map's smallest; the whole map beside max_signatures"; }
   static std::string shown(const PayloadChoice& value) {
     return "[" + payload_words(value.mask) + "]";
   }

@@ -8,6 +8,8 @@ if(TARGET zonepack AND TARGET zoned)
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/report_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
 endif()
+add_test(NAME system/packages_listed
+         COMMAND ${CMAKE_CURRENT_LIST_DIR}/packages_listed_test.sh ${PROJECT_SOURCE_DIR})
 if(TARGET zonepack)
   add_test(NAME system/install_and_find_package
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/install_test.sh ${PROJECT_BINARY_DIR}

@@ -74,7 +74,8 @@ void expect_defaults(const char* name, const Fields<Section>& fields, const Sect
 TEST(Settings, TheExampleShowsEveryKeyWithItsDefault) {
   const Settings loaded = load_settings(kExample).settings;
   expect_defaults("map", map_fields(), loaded.map);
-  EXPECT_EQ(loaded.memory.budget, 24 * kMiB);  // a robot's own; without it the map's smallest
+  EXPECT_THAT(text_of(kExample), HasSubstr("# budget: "));
+  EXPECT_EQ(loaded.memory.budget, std::nullopt);
   EXPECT_EQ(loaded.memory.payload.mask, MemorySettings{}.payload.mask);
   EXPECT_EQ(loaded.memory.max_signatures, 0u);
   expect_defaults("loading", loading_fields(), loaded.loading);
@@ -121,8 +122,8 @@ TEST(Settings, AWrongTypeOrRangeTellsWhatIsAllowed) {
            Case{"period_hz: 100", "period_hz: 0", "cycle.period_hz: 0 is out of range"},
            Case{"max_signatures: 0", "max_signatures: 1.5", "\"1.5\" is not a whole number"},
            Case{"max_signatures: 0", "max_signatures: -1", "\"-1\" is out of range"},
-           Case{"budget: 24MiB", "budget: 24MB", "memory.budget: \"24MB\" is not a size"},
-           Case{"budget: 24MiB", "budget: 0", "memory.budget: \"0\" is not a size"},
+           Case{"# budget: 24MiB", "budget: 24MB", "memory.budget: \"24MB\" is not a size"},
+           Case{"# budget: 24MiB", "budget: 0", "memory.budget: \"0\" is not a size"},
            Case{"[features, scan, grid]", "[features, scam]",
                 "memory.payload: \"scam\" is not a payload"},
            Case{"[features, scan, grid]", "features", "memory.payload: \"features\" where a list"},
