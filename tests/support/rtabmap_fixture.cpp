@@ -196,7 +196,9 @@ void write_features(Database& database, const FixtureSchema& schema, const Signa
 
 void write_links(Database& database, const FixtureSchema& schema, const SignatureRecord& r) {
   Insert row(database, "Link");
-  for (const packer::Link& link : r.links) {
+  // Last link first: a reader must not count on the order of rows.
+  for (auto at = r.links.rbegin(); at != r.links.rend(); ++at) {
+    const packer::Link& link = *at;
     row.integer("from_id", r.id)
         .integer("to_id", link.to)
         .integer("type", link.type)
