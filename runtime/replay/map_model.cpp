@@ -91,21 +91,23 @@ std::optional<std::string> refusal(const Catalog& catalog, const ResidencyLimits
     return "budget " + format_byte_count(limits.budget) + ": tables and read buffers alone take " +
            std::to_string(limits.fixed) + " bytes; " + remedy(catalog);
   }
+  if (catalog.zones.empty()) return std::nullopt;
   const std::uint64_t slots =
       Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes);
-  for (const CatalogZone& zone : catalog.zones) {
-    if (zone.slots > slots) {
-      return "zone " + zone.name + " takes " + std::to_string(zone.slots * limits.slot_bytes) +
-             " bytes beside " + std::to_string(limits.fixed) +
-             " for tables and buffers, over the budget of " + format_byte_count(limits.budget) +
-             "; " + remedy(catalog);
-    }
-    if (limits.max_signatures > 0 && zone.signatures > limits.max_signatures) {
-      return "zone " + zone.name + " has " + std::to_string(zone.signatures) +
-             " signatures, over the limit of " + std::to_string(limits.max_signatures) +
-             "; the smallest limit for this map is " +
-             std::to_string(limits.largest_pair.signatures) + " signatures";
-    }
+  const CatalogZone& widest = *std::ranges::max_element(catalog.zones, {}, &CatalogZone::slots);
+  if (widest.slots > slots) {
+    return "zone " + widest.name + " takes " + std::to_string(widest.slots * limits.slot_bytes) +
+           " bytes beside " + std::to_string(limits.fixed) +
+           " for tables and buffers, over the budget of " + format_byte_count(limits.budget) +
+           "; " + remedy(catalog);
+  }
+  const CatalogZone& fullest =
+      *std::ranges::max_element(catalog.zones, {}, &CatalogZone::signatures);
+  if (limits.max_signatures > 0 && fullest.signatures > limits.max_signatures) {
+    return "zone " + fullest.name + " has " + std::to_string(fullest.signatures) +
+           " signatures, over the limit of " + std::to_string(limits.max_signatures) +
+           "; the smallest limit for this map is " +
+           std::to_string(limits.largest_pair.signatures) + " signatures";
   }
   return std::nullopt;
 }

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/map_keeper.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "runtime/replay/modelled_loader.hpp"
+
+namespace zonepack {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+// Zones of 4 slots each among 8 slots; a load takes 1 s, in chunks of 0.25 s.
+class Keeper : public testing::Test, public EventSink, public ZoneFiller {
+ protected:
+  void SetUp() override { make(8, {}); }
+
+  void make(std::uint32_t slots, std::vector<ZoneId> pins) {
+    pinned = std::move(pins);
+    memory = std::make_unique<Residency>(
+        needs.size(), ResidencyLimits{ByteCount{slots} * 100, 0, 100, 0, {4, 4}, 0});
+    for (const ZoneId zone : pinned) ASSERT_TRUE(memory->pin(zone, needs[zone]).ok());
+    loader = std::make_unique<ModelledLoader>(slots, work, LoadRates{1000, 1000}, this);
+    keeper = std::make_unique<MapKeeper>(*memory, *loader, events, needs, pinned);
+  }
+
+  void on_event(const Event& event) noexcept override {
+    if (event.kind == EventKind::kZoneWanted || event.kind == EventKind::kZoneUnwanted) return;
+    log.push_back(std::string(to_string(event.kind)) + " " + std::to_string(event.zone));
+  }
+
+  Result<void> fill(ZoneId zone, std::span<const SlotIndex>) override {
+    if (zone == broken) return ErrorCode::kBadChecksum;
+    return {};
+  }
+
+  void step(std::vector<ZoneId> wanted, std::size_t urgent = 16, std::int64_t dt = kSecond) {
+    now += dt;
+    loader->advance_to(now);
+    keeper->collect(now);
+    keeper->keep(now, wanted, urgent);
+  }
+
+  using Log = std::vector<std::string>;
+  Log taken() { return std::exchange(log, {}); }
+
+  std::vector<ZoneNeed> needs = std::vector<ZoneNeed>(6, ZoneNeed{4, 4});
+  std::vector<LoadWork> work = std::vector<LoadWork>(6, LoadWork{1000, 0});
+  std::vector<ZoneId> pinned;
+  ZoneId broken = kNoZone;
+  EventStamper events{*this};
+  std::unique_ptr<Residency> memory;
+  std::unique_ptr<ModelledLoader> loader;
+  std::unique_ptr<MapKeeper> keeper;
+  std::int64_t now = 0;
+  Log log;
+};
+
+TEST_F(Keeper, LoadsWhatIsWantedOneAfterTheOtherMostUrgentFirst) {
+  step({0, 1});
+  EXPECT_EQ(taken(), Log{"load_started 0"});
+  step({0, 1});
+  EXPECT_EQ(taken(), (Log{"load_done 0", "load_started 1"}));
+  step({0, 1});
+  EXPECT_EQ(taken(), Log{"load_done 1"});
+  EXPECT_FALSE(keeper->blocked());
+}
+
+TEST_F(Keeper, UnloadsTheZoneLeftLongestAgo) {
+  step({0});
+  step({0, 1});
+  step({1});
+  taken();
+  step({1, 2});
+  EXPECT_EQ(taken(), (Log{"evicted 0", "load_started 2"}));
+}
+
+TEST_F(Keeper, CancelsALoadThatNobodyWantsAnyMore) {
+  step({0});
+  step({0, 1});
+  taken();
+  step({0}, 16, kSecond / 10);
+  EXPECT_EQ(taken(), Log{"load_cancelled 1"});
+  EXPECT_EQ(memory->charged(), 800u);  // until the loader gives the slots back
+  step({0}, 16, kSecond / 4);
+  EXPECT_EQ(taken(), Log{"load_given_up 1"});
+  EXPECT_EQ(memory->charged(), 400u);
+}
+
+TEST_F(Keeper, CancelsALoadThatKeepsTheOwnZoneWaiting) {
+  step({0});
+  step({0, 1});
+  taken();
+  step({2, 1, 0}, 16, kSecond / 10);
+  EXPECT_EQ(taken(), Log{"load_cancelled 1"});
+  step({2, 1, 0}, 16, kSecond / 4);
+  EXPECT_EQ(taken(), (Log{"load_given_up 1", "load_started 2"}));
+}
+
+TEST_F(Keeper, BlocksWhenWhatMustStayLeavesNoRoomAndSaysSoOnce) {
+  needs[2] = {6, 6};
+  step({0});
+  taken();
+  step({0, 2});
+  step({0, 2});
+  EXPECT_EQ(taken(), (Log{"load_done 0", "blocked 2"}));
+  EXPECT_TRUE(keeper->blocked());
+  EXPECT_TRUE(memory->resident(0));
+  step({2});
+  EXPECT_EQ(taken(), (Log{"evicted 0", "load_started 2", "unblocked 2"}));
+}
+
+TEST_F(Keeper, AnUrgentZoneTakesTheRoomOfALessUrgentOne) {
+  step({0});
+  step({0, 1});
+  step({0, 1});
+  taken();
+  step({0, 2, 1});
+  EXPECT_EQ(taken(), (Log{"evicted 1", "load_started 2"}));
+  step({0, 2, 1});
+  EXPECT_EQ(taken(), (Log{"load_done 2", "blocked 1"}));
+}
+
+TEST_F(Keeper, AZoneThatIsOnlyPossibleTakesNobodysRoom) {
+  step({0});
+  step({0, 1});
+  step({0, 1});
+  taken();
+  step({0, 2, 1}, 1);
+  EXPECT_EQ(taken(), Log{"blocked 2"});
+  EXPECT_TRUE(memory->resident(1));
+}
+
+TEST_F(Keeper, ADamagedZoneCostsOnlyItselfAndIsTriedAgainLaterAndLater) {
+  broken = 0;
+  step({0, 1});
+  step({0, 1});  // failed: next try a second later; zone 1 goes ahead
+  EXPECT_EQ(taken(), (Log{"load_started 0", "load_failed 0", "load_started 1"}));
+  step({0, 1});
+  EXPECT_EQ(taken(), (Log{"load_done 1", "load_started 0"}));
+  step({0, 1});  // failed again: two seconds
+  step({0, 1});
+  EXPECT_EQ(taken(), Log{"load_failed 0"});
+  broken = kNoZone;
+  step({0, 1});
+  step({0, 1});
+  EXPECT_EQ(taken(), (Log{"load_started 0", "load_done 0"}));
+}
+
+TEST_F(Keeper, LoadsPinnedZonesAndNeverUnloadsThem) {
+  make(8, {5});
+  step({0});
+  step({0});
+  step({0});
+  EXPECT_EQ(taken(), (Log{"load_started 0", "load_done 0", "load_started 5", "load_done 5"}));
+  step({1});
+  EXPECT_EQ(taken(), (Log{"evicted 0", "load_started 1"}));
+}
+
+TEST_F(Keeper, HoldsTheLimitUnderRandomWishes) {
+  std::mt19937 random(3);
+  for (int round = 0; round < 2000; ++round) {
+    std::vector<ZoneId> wanted;
+    for (ZoneId zone = 0; zone < 6; ++zone) {
+      if (random() % 3 == 0) wanted.push_back(zone);
+    }
+    std::shuffle(wanted.begin(), wanted.end(), random);
+    broken = random() % 4 == 0 ? static_cast<ZoneId>(random() % 6) : kNoZone;
+    step(wanted, random() % 4, static_cast<std::int64_t>(random() % 700) * 1'000'000);
+    std::uint64_t held = 0;
+    for (ZoneId zone = 0; zone < 6; ++zone) {
+      if (memory->state(zone) != ZoneState::kAbsent) held += needs[zone].slots;
+    }
+    ASSERT_LE(held, 8u);
+    ASSERT_EQ(loader->pool().free_count(), 8 - held);
+  }
+  EXPECT_GT(memory->counters().zones_unloaded, 20u);
+}
+
+}  // namespace
+}  // namespace zonepack

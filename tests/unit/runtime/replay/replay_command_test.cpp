@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/replay/replay_command.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "runtime/odometry/det_math.hpp"
+#include "runtime/replay/summary_text.hpp"
+
+namespace zonepack {
+namespace {
+
+TEST(ParseStart, TakesFixTruthOrAPoseInDegrees) {
+  EXPECT_EQ(parse_start("fix")->kind, StartChoice::Kind::kFix);
+  EXPECT_EQ(parse_start("truth")->kind, StartChoice::Kind::kTruth);
+  const auto pose = parse_start("-1.5,2,270");
+  ASSERT_TRUE(pose);
+  EXPECT_EQ(pose->kind, StartChoice::Kind::kPose);
+  EXPECT_EQ(pose->pose.x_m, -1.5);
+  EXPECT_EQ(pose->pose.y_m, 2);
+  EXPECT_NEAR(pose->pose.yaw_rad, -kPi / 2, 1e-12);
+}
+
+TEST(ParseStart, RefusesAnythingElse) {
+  for (const char* text : {"", "fix ", "1,2", "1,2,3,4", "1,,3", "1,2,x", "nan,0,0", "1,2,inf",
+                           "0,0,1e300", "1;2;3"}) {
+    EXPECT_FALSE(parse_start(text)) << text;
+  }
+}
+
+RunSummary summary() {
+  RunSummary s;
+  s.budget_bytes = 1083744;
+  s.signatures_loaded = 113;
+  s.zone_absent_s = 0.02;
+  s.event_log_hash = "ab";
+  return s;
+}
+
+TEST(SummaryJson, HasTheKeysThatScriptsRelyOn) {
+  RunSummary s = summary();
+  s.pose_error_m = PoseError{0.1, 0.2, 0.3};
+  const auto json = nlohmann::ordered_json::parse(summary_json(s));
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  EXPECT_EQ(keys, (std::vector<std::string>{"budget_bytes",
+                                            "peak_charged_bytes",
+                                            "budget_violations",
+                                            "max_signatures",
+                                            "peak_signatures",
+                                            "signatures_loaded",
+                                            "signatures_unloaded",
+                                            "zones_loaded",
+                                            "zones_unloaded",
+                                            "bytes_loaded",
+                                            "zone_switches",
+                                            "start_s",
+                                            "zone_absent_s",
+                                            "blocked_s",
+                                            "wrong_zone_s",
+                                            "pose_error_m",
+                                            "cycles",
+                                            "can_frames",
+                                            "can_rejected",
+                                            "corrections_used",
+                                            "corrections_rejected",
+                                            "event_log_hash"}));
+  EXPECT_EQ(json["budget_bytes"], 1083744);
+  EXPECT_EQ(json["zone_absent_s"], 0.02);
+  EXPECT_EQ(json["pose_error_m"]["p95"], 0.2);
+  EXPECT_EQ(json["event_log_hash"], "ab");
+}
+
+TEST(SummaryJson, HasNoPoseErrorWithoutTruth) {
+  EXPECT_TRUE(nlohmann::json::parse(summary_json(summary()))["pose_error_m"].is_null());
+}
+
+TEST(SummaryTable, NamesTheBudgetInBytesAndMebibytes) {
+  EXPECT_NE(summary_table(summary()).find("1083744 bytes (1.03 MiB)"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace zonepack
