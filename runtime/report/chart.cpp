@@ -30,11 +30,11 @@ std::vector<LegendItem> legend_of(const Chart& chart) {
 }
 
 void draw_shades(Svg& svg, const Chart& chart, const ChartScale& scale) {
-  for (const ChartShade& shade : chart.shades) {
-    for (const TimeSpan& span : shade.spans) {
+  for (auto shade = chart.shades.rbegin(); shade != chart.shades.rend(); ++shade) {
+    for (const TimeSpan& span : shade->spans) {
       const double from = scale.x(span.from_s);
       svg.rect({from, scale.top}, std::max(scale.x(span.to_s) - from, 1.0), scale.height,
-               {.fill = mix(kWhite, shade.color, 0.3), .hint = shade.name});
+               {.fill = mix(kWhite, shade->color, 0.3), .hint = shade->name});
     }
   }
 }

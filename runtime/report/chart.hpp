@@ -51,7 +51,7 @@ struct Chart {
   std::string title;
   std::vector<ChartSeries> series;
   std::optional<ChartLimit> limit;
-  std::vector<ChartShade> shades;
+  std::vector<ChartShade> shades;       // the first lies on top
   std::vector<TimelineBlock> timeline;  // the zone the robot was in
   Quantity quantity = Quantity::kNumber;
   std::string unit;  // after numbers (" m"); empty for counts and bytes

@@ -122,6 +122,13 @@ TEST(Chart, NamesAShadeOnlyWhenItOccurs) {
   EXPECT_EQ(count_of(text, ">blocked</text>"), 0u);
 }
 
+TEST(Chart, TheFirstShadeLiesOnTop) {
+  Chart chart = memory_chart();
+  chart.shades = {{"absent", kLimit, {{1, 2}}}, {"blocked", kDoor, {{0, 3}}}};
+  const std::string text = draw_chart(chart).inline_text();
+  EXPECT_LT(text.find("<title>blocked</title>"), text.find("<title>absent</title>"));
+}
+
 TEST(Chart, TheSameDataGivesTheSameBytes) {
   EXPECT_EQ(draw_chart(memory_chart()).file_text(), draw_chart(memory_chart()).file_text());
 }
