@@ -13,6 +13,7 @@ namespace {
 using Verdict = CorrectionVerdict;
 
 constexpr double kSecondsPerNs = 1e-9;
+constexpr std::uint32_t kFixesForTrust = 2;
 constexpr double kDriftStep_s = 0.1;   // how often missing odometry is counted in
 constexpr double kDriftEntry_s = 1.0;  // how much of it shares an entry of the history
 
@@ -71,9 +72,7 @@ void PoseFilter::start_at(std::int64_t t_ns, const Pose2& T_map_base, double sig
                           double sigma_rad) noexcept {
   history_.restart(t_ns);
   trusted_ = false;
-  const UncertainPose guess = uncertain(T_map_base, sigma_m, sigma_rad);
-  candidates_[0] = {history_.newest(), guess, guess, 0, false};
-  candidate_count_ = 1;
+  candidates_.guess(history_, uncertain(T_map_base, sigma_m, sigma_rad));
   list_hypotheses();
 }
 
@@ -83,9 +82,7 @@ bool PoseFilter::may_extend_newest(std::int64_t t_ns, bool drift) const noexcept
   const OdometryHistory::Entry& last = history_.back();
   if (last.has_fix || last.drift != drift) return false;
   if (trusted_ && history_.newest() == valid_from_) return false;
-  for (std::size_t i = 0; i < candidate_count_; ++i) {
-    if (candidates_[i].anchor == history_.newest()) return false;
-  }
+  if (candidates_.stand_on(history_.newest())) return false;
   const double longest = drift ? kDriftEntry_s : settings_.history_step_s;
   return t_ns <= last.t_ns ||
          seconds_between(history_.at(history_.newest() - 1).t_ns, t_ns) <= longest;
@@ -93,9 +90,7 @@ bool PoseFilter::may_extend_newest(std::int64_t t_ns, bool drift) const noexcept
 
 // Adds a step to the history and to every place the robot may be.
 void PoseFilter::append(std::int64_t t_ns, const UncertainPose& step, bool drift) noexcept {
-  for (std::size_t i = 0; i < candidate_count_; ++i) {
-    candidates_[i].now = compose(candidates_[i].now, step);
-  }
+  candidates_.after_step(step);
   if (may_extend_newest(t_ns, drift)) {
     OdometryHistory::Entry& last = history_.back();
     last.step = compose(last.step, step);
@@ -110,14 +105,8 @@ void PoseFilter::append(std::int64_t t_ns, const UncertainPose& step, bool drift
 // Before an entry is added: what hangs on the oldest one, which may go, moves on to the next.
 void PoseFilter::make_room() noexcept {
   if (!history_.full()) return;
-  const std::uint64_t oldest = history_.oldest();
-  for (std::size_t i = 0; i < candidate_count_; ++i) {
-    Candidate& candidate = candidates_[i];
-    if (candidate.anchor != oldest) continue;
-    candidate.at_anchor = history_.carry(candidate.at_anchor, oldest, oldest + 1);
-    ++candidate.anchor;
-  }
-  valid_from_ = std::max(valid_from_, oldest + 1);
+  candidates_.before_oldest_goes(history_);
+  valid_from_ = std::max(valid_from_, history_.oldest() + 1);
 }
 
 // A fix in a pause gets an entry of its own, so that it stays at its stamp when the motion is
@@ -128,9 +117,7 @@ void PoseFilter::split_drift(std::uint64_t index, std::int64_t t_ns) noexcept {
   if (trusted_ && index == valid_from_) return;
   make_room();
   history_.split(index, t_ns);
-  for (std::size_t i = 0; i < candidate_count_; ++i) {
-    if (candidates_[i].anchor >= index) ++candidates_[i].anchor;
-  }
+  candidates_.after_split(index);
 }
 
 // Odometry is back with the motion since it went missing.
@@ -139,10 +126,7 @@ void PoseFilter::bridge_pause(const OdometryIncrement& increment) noexcept {
   const std::uint64_t before =
       history_.fill_drift(increment.from_ns, increment.to_ns, increment.motion);
   history_.replay_from(trusted_ ? std::max(before, valid_from_) : before);
-  for (std::size_t i = 0; i < candidate_count_; ++i) {
-    Candidate& candidate = candidates_[i];
-    candidate.now = history_.carry(candidate.at_anchor, candidate.anchor, history_.newest());
-  }
+  candidates_.after_rewrite(history_);
 }
 
 void PoseFilter::predict(const OdometryIncrement& increment) noexcept {
@@ -154,10 +138,7 @@ void PoseFilter::predict(const OdometryIncrement& increment) noexcept {
     history_.restart(increment.to_ns);
     history_.back().state = state;
     valid_from_ = history_.newest();
-    for (std::size_t i = 0; i < candidate_count_; ++i) {
-      candidates_[i].anchor = history_.newest();
-      candidates_[i].at_anchor = candidates_[i].now;
-    }
+    candidates_.after_restart(history_);
   }
   if (history_.back().drift && increment.to_ns > increment.from_ns) {
     bridge_pause(increment);
@@ -225,8 +206,8 @@ CorrectionVerdict PoseFilter::count(CorrectionVerdict verdict) noexcept {
 
 // The first fix of a run may be stamped a moment before the first odometry came.
 bool PoseFilter::is_just_before_start(std::int64_t stamp_ns) const noexcept {
-  return !history_.full() && seconds_between(stamp_ns, history_.at(history_.oldest()).t_ns) <=
-                                 settings_.extrapolate_s;
+  return !history_.full() &&
+         seconds_between(stamp_ns, history_.at(history_.oldest()).t_ns) <= settings_.extrapolate_s;
 }
 
 CorrectionVerdict PoseFilter::correct(const PoseCorrection& fix, std::int64_t now_ns) noexcept {
@@ -263,47 +244,22 @@ CorrectionVerdict PoseFilter::place(const UncertainPose& fix, std::uint64_t inde
   entry.has_fix = true;
   entry.state = fuse(entry.state, fix);
   history_.replay_from(index);
-  candidate_count_ = 0;
+  candidates_.clear();
   return Verdict::kUsed;
 }
 
-// Adds the fix to the candidate it agrees with best, or makes it one.
+// Untrusted: a hypothesis. Trusted: refused, but a run of such fixes that agree is believed.
 CorrectionVerdict PoseFilter::support(const UncertainPose& fix, std::uint64_t index) noexcept {
-  Candidate* best = nullptr;
-  double least = settings_.gate_chi2;
-  bool near_guess = false;
-  UncertainPose best_prior, best_fix;
-  for (std::size_t i = 0; i < candidate_count_; ++i) {
-    Candidate& candidate = candidates_[i];
-    const std::uint64_t at = std::max(index, candidate.anchor);
-    const UncertainPose prior = history_.carry(candidate.at_anchor, candidate.anchor, at);
-    const UncertainPose later_fix = history_.carry(fix, index, at);
-    const double distance2 = mahalanobis2(prior, later_fix);
-    if (candidate.fixes == 0) {
-      near_guess = distance2 <= settings_.gate_chi2;
-    } else if (distance2 <= least) {
-      least = distance2;
-      best = &candidate;
-      best_prior = prior;
-      best_fix = later_fix;
-    }
+  const auto confirmed = candidates_.add(history_, fix, index, settings_.gate_chi2);
+  if (!confirmed || confirmed->fixes < (trusted_ ? settings_.reinit_fixes : kFixesForTrust)) {
+    return trusted_ ? Verdict::kOutlier : Verdict::kHypothesis;
   }
-  const Verdict kept = trusted_ ? Verdict::kOutlier : Verdict::kHypothesis;
-  if (best == nullptr) {
-    new_candidate() = {index, fix, history_.carry(fix, index, history_.newest()), 1, near_guess};
-    return kept;
-  }
-  best->anchor = std::max(index, best->anchor);
-  best->at_anchor = fuse(best_prior, best_fix);
-  best->now = history_.carry(best->at_anchor, best->anchor, history_.newest());
-  ++best->fixes;
-  if (best->fixes < (trusted_ ? settings_.reinit_fixes : 2)) return kept;
   const Verdict verdict = trusted_ ? Verdict::kReinitialised : Verdict::kTrusted;
-  adopt(Candidate(*best));
+  adopt(*confirmed);
   return verdict;
 }
 
-void PoseFilter::adopt(const Candidate& candidate) noexcept {
+void PoseFilter::adopt(const FixCandidates::Candidate& candidate) noexcept {
   for (std::uint64_t i = history_.oldest(); i <= history_.newest(); ++i) {
     history_.at(i).has_fix = false;
   }
@@ -311,49 +267,16 @@ void PoseFilter::adopt(const Candidate& candidate) noexcept {
   history_.at(valid_from_).state = candidate.at_anchor;
   history_.replay_from(valid_from_);
   trusted_ = true;
-  candidate_count_ = 0;
-}
-
-// A free place, or that of the candidate with the fewest fixes, the oldest of these; never the
-// guess.
-PoseFilter::Candidate& PoseFilter::new_candidate() noexcept {
-  if (candidate_count_ < candidates_.size()) return candidates_[candidate_count_++];
-  Candidate* weakest = nullptr;
-  for (Candidate& candidate : candidates_) {
-    if (candidate.fixes == 0) continue;
-    if (weakest == nullptr || candidate.fixes < weakest->fixes ||
-        (candidate.fixes == weakest->fixes && candidate.anchor < weakest->anchor)) {
-      weakest = &candidate;
-    }
-  }
-  return *weakest;
-}
-
-// A start pose holds until a fix agrees with it or two agree with each other.
-int PoseFilter::rank(const Candidate& candidate) const noexcept {
-  if (candidate.fixes == 0) return 2;
-  return static_cast<int>(candidate.fixes) * 2 + (candidate.near_guess ? 1 : 0) - 1;
+  candidates_.clear();
 }
 
 void PoseFilter::list_hypotheses() noexcept {
   if (trusted_) {
-    hypotheses_[0] = {history_.back().state.pose, history_.back().state.covariance, 2};
+    const UncertainPose& newest = history_.back().state;
+    hypotheses_[0] = {newest.pose, newest.covariance, kFixesForTrust};
     hypothesis_count_ = 1;
-    return;
-  }
-  std::array<const Candidate*, kMaxHypotheses> order{};
-  for (std::size_t i = 0; i < candidate_count_; ++i) order[i] = &candidates_[i];
-  // Insertion sort: best first, newer before older.
-  for (std::size_t i = 1; i < candidate_count_; ++i) {
-    for (std::size_t j = i; j > 0; --j) {
-      const int higher = rank(*order[j]) - rank(*order[j - 1]);
-      if (higher < 0 || (higher == 0 && order[j]->anchor <= order[j - 1]->anchor)) break;
-      std::swap(order[j], order[j - 1]);
-    }
-  }
-  hypothesis_count_ = candidate_count_;
-  for (std::size_t i = 0; i < candidate_count_; ++i) {
-    hypotheses_[i] = {order[i]->now.pose, order[i]->now.covariance, order[i]->fixes};
+  } else {
+    hypothesis_count_ = candidates_.list(hypotheses_);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "runtime/odometry/fix_candidates.hpp"
 #include "runtime/odometry/odometry_history.hpp"
 #include "runtime/odometry/pose.hpp"
 #include "runtime/odometry/se2.hpp"
@@ -100,15 +101,6 @@ class PoseFilter {
   const PoseFilterCounters& counters() const noexcept { return counters_; }
 
  private:
-  // One place the robot may be: fixes that agree with each other.
-  struct Candidate {
-    std::uint64_t anchor = 0;  // entry of the history at which at_anchor holds
-    UncertainPose at_anchor;
-    UncertainPose now;  // at the newest entry
-    std::uint32_t fixes = 0;
-    bool near_guess = false;  // its first fix lies within the gate of the start pose
-  };
-
   bool is_plausible(const PoseCorrection& fix) const noexcept;
   UncertainPose measured(const PoseCorrection& fix) const noexcept;
   UncertainPose motion_since_newest(double seconds) const noexcept;
@@ -121,18 +113,14 @@ class PoseFilter {
   CorrectionVerdict count(CorrectionVerdict verdict) noexcept;
   CorrectionVerdict place(const UncertainPose& fix, std::uint64_t index) noexcept;
   CorrectionVerdict support(const UncertainPose& fix, std::uint64_t index) noexcept;
-  void adopt(const Candidate& candidate) noexcept;
-  Candidate& new_candidate() noexcept;
-  int rank(const Candidate& candidate) const noexcept;
+  void adopt(const FixCandidates::Candidate& candidate) noexcept;
   void list_hypotheses() noexcept;
 
   PoseFilterSettings settings_;
   OdometryHistory history_;
   std::uint64_t valid_from_ = 0;  // when trusted: the first entry whose state is the filter's
   bool trusted_ = false;
-  // Untrusted: the hypotheses. Trusted: runs of rejected fixes that agree.
-  std::array<Candidate, kMaxHypotheses> candidates_;
-  std::size_t candidate_count_ = 0;
+  FixCandidates candidates_;  // untrusted: hypotheses; trusted: runs of refused fixes that agree
   std::array<PoseHypothesis, kMaxHypotheses> hypotheses_;
   std::size_t hypothesis_count_ = 0;
   double speed_m_s_ = 0;

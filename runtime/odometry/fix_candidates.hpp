@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "runtime/odometry/odometry_history.hpp"
+#include "runtime/odometry/pose.hpp"
+#include "runtime/odometry/se2.hpp"
+
+namespace zonepack {
+
+// Places where the robot may be, each backed by fixes that agree with each other through odometry:
+// the hypotheses before a pose is trusted, and afterwards the runs of refused fixes. The pose of a
+// start that was given is one of them, without a fix.
+//
+// A candidate stands at an entry of the history (its anchor), that of its last fix, so that a later
+// fix is compared where it was taken. Real-time: no allocation; at most kMaxHypotheses candidates.
+class FixCandidates {
+ public:
+  struct Candidate {
+    std::uint64_t anchor = 0;
+    UncertainPose at_anchor;
+    UncertainPose now;  // at the newest entry
+    std::uint32_t fixes = 0;
+    bool near_guess = false;  // its first fix lay within the gate of the start that was given
+  };
+
+  void clear() noexcept { count_ = 0; }
+
+  // A start that was given, at the newest entry; forgets all others.
+  void guess(const OdometryHistory& history, const UncertainPose& pose) noexcept;
+
+  // Adds a fix, given at entry `index`, to the candidate that it agrees with best (within the gate,
+  // a squared Mahalanobis distance), or makes it one; the weakest gives way. Returns the candidate
+  // that was confirmed, nothing for a new one.
+  std::optional<Candidate> add(const OdometryHistory& history, const UncertainPose& fix,
+                               std::uint64_t index, double gate_chi2) noexcept;
+
+  // Best first: those with most fixes; a given start before a single fix that contradicts it.
+  // Returns how many there are.
+  std::size_t list(std::array<PoseHypothesis, kMaxHypotheses>& into) const noexcept;
+
+  // What happens to the history, told before or after as named.
+  void after_step(const UncertainPose& step) noexcept;  // at its newest end
+  void before_oldest_goes(const OdometryHistory& history) noexcept;
+  void after_split(std::uint64_t index) noexcept;               // entries from index renumbered
+  void after_rewrite(const OdometryHistory& history) noexcept;  // steps changed
+  void after_restart(const OdometryHistory& history) noexcept;  // one entry, poses stay
+  bool stand_on(std::uint64_t index) const noexcept;
+
+ private:
+  Candidate& place_for_new() noexcept;
+
+  std::array<Candidate, kMaxHypotheses> all_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace zonepack
