@@ -89,6 +89,12 @@ void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostr
   }
   for (const SplitZone& split : s.split) {
     out << "zone " << split.name << " was split into " << split.parts << " parts\n";
+    if (split.narrow_limit > 0) {
+      out << "warning: some parts of zone " << split.name
+          << " are narrower than 1 cm, because signatures stand that close and --max-zone-bytes is "
+             "that low; a robot hardly enters them. About "
+          << split.narrow_limit << " bytes would do without\n";
+    }
   }
   for (const Damage& d : s.damages) {
     out << "WARNING: signature " << d.signature << " left out, " << d.column << ": " << d.problem

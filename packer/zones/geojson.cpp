@@ -12,6 +12,10 @@ namespace {
 
 using nlohmann::json;
 
+constexpr int kMaxDepth =
+    64;  // GeoJSON needs 8; copying and printing a value take stack for each level
+struct TooDeep {};
+
 // Hands the text to the JSON parser and counts the lines that it has taken.
 class LineCountingIterator {
  public:
@@ -50,6 +54,7 @@ class Follower {
   Follower(const std::size_t& line, Findings& findings) : line_(line), findings_(findings) {}
 
   bool operator()(int depth, json::parse_event_t event, const json& parsed) {
+    if (depth > kMaxDepth) throw TooDeep{};
     switch (event) {
       case json::parse_event_t::object_start:
         if (depth == 2 && section_ == "features") feature_lines_.push_back(line_);
@@ -114,6 +119,10 @@ std::vector<Feature> read_features(std::string_view text, Findings& findings) {
                        [&](int depth, json::parse_event_t event, json& parsed) {
                          return follower(depth, event, parsed);
                        });
+  } catch (const TooDeep&) {
+    fault(line,
+          "nested more than " + std::to_string(kMaxDepth) + " levels deep; this is no drawing");
+    return {};
   } catch (const json::parse_error& error) {
     fault(line, "not valid JSON: " + plain_reason(error.what()));
     return {};
