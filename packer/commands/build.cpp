@@ -84,8 +84,7 @@ void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostr
     out << "warning: " << s.orphans.size() << " signatures stand in no zone ("
         << (options.orphans == OrphanPolicy::kDrop ? "left out" : "given to the nearest")
         << "), such as " << first.id << " at " << point_text(first.p_map) << ", "
-        << number_text(first.distance_m) << " m off zone "
-        << "\n";
+        << number_text(first.distance_m) << " m from the nearest zone\n";
   }
   for (const SplitZone& split : s.split) {
     out << "zone " << split.name << " was split into " << split.parts << " parts\n";
