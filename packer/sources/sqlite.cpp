@@ -70,10 +70,10 @@ void refuse_if_not_closed(const fs::path& path, const std::string& name) {
   }
 }
 
-std::string immutable_uri(const fs::path& path) {
+std::string immutable_uri(const fs::path& absolute_path) {
   constexpr std::string_view kHex = "0123456789ABCDEF";
   std::string uri = "file://";
-  for (const char c : fs::absolute(path).string()) {
+  for (const char c : absolute_path.string()) {
     const auto byte = static_cast<unsigned char>(c);
     if (std::isalnum(byte) != 0 || std::strchr("/-._~", c) != nullptr) {
       uri += c;
@@ -88,10 +88,12 @@ std::string immutable_uri(const fs::path& path) {
 
 SqliteFile::SqliteFile(const fs::path& path) : name_(path.string()) {
   refuse_unless_database(path, name_);
-  refuse_if_not_closed(path, name_);
+  // SQLite keeps its log and journal beside the file itself, not beside a link to it.
+  const fs::path file = fs::canonical(path);
+  refuse_if_not_closed(file, name_);
   sqlite3* handle = nullptr;
   const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
-  const int code = sqlite3_open_v2(immutable_uri(path).c_str(), &handle, flags, nullptr);
+  const int code = sqlite3_open_v2(immutable_uri(file).c_str(), &handle, flags, nullptr);
   handle_.reset(handle);
   if (code != SQLITE_OK) {
     throw SqliteError(name_ + ": cannot be opened: " + sqlite3_errstr(code));

@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "packer/sources/rtabmap_database.hpp"
 #include "tests/support/blob_writer.hpp"
@@ -91,6 +94,15 @@ TEST_F(OpeningADatabase, RefusesALiveWriteAheadLog) {
   EXPECT_EQ(database.read(1, PayloadSet()).weight, 2);
 }
 
+TEST_F(OpeningADatabase, LooksForTheLogBesideTheFileAndNotBesideALinkToIt) {
+  write_rtabmap_database(path_, one_of_everything("0.23.8"));
+  const fs::path link = folder_ / "link.db";
+  fs::create_symlink(path_, link);
+  EXPECT_EQ(RtabmapDatabase(link).outline().nodes.size(), 23u);
+  write(folder_ / "map.db-wal", "frames");
+  EXPECT_THAT(refusal(link), HasSubstr("map.db-wal"));
+}
+
 TEST_F(OpeningADatabase, ChangesNeitherBytesNorTimesNorFolder) {
   write_rtabmap_database(path_, one_of_everything("0.23.8"));
   execute(path_, "PRAGMA journal_mode=WAL");
@@ -109,6 +121,25 @@ TEST_F(OpeningADatabase, ChangesNeitherBytesNorTimesNorFolder) {
   EXPECT_EQ(fs::last_write_time(path_), modified);
   EXPECT_EQ(fs::last_write_time(folder_.path()), folder_modified);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1);
+}
+
+TEST_F(OpeningADatabase, GivesEachThreadItsOwnReader) {
+  const auto fixture = one_of_everything("0.23.8");
+  write_rtabmap_database(path_, fixture);
+  const auto expected = test_support::expected_records(fixture);
+  const RtabmapDatabase database(path_);
+  std::atomic<int> equal = 0;
+  const auto read_all = [&] {
+    RtabmapDatabase own = database.reopen();
+    for (const SignatureRecord& wanted : expected) {
+      const SignatureRecord record = own.read(wanted.id, PayloadSet());
+      if (test_support::first_difference(record, wanted).empty()) ++equal;
+    }
+  };
+  std::vector<std::jthread> threads;
+  for (int i = 0; i < 3; ++i) threads.emplace_back(read_all);
+  threads.clear();
+  EXPECT_EQ(equal, 3 * 23);
 }
 
 TEST_F(OpeningADatabase, TakesAnyFileName) {
