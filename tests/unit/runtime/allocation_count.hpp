@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+namespace zonepack::testing_support {
+
+// Counts what the whole program allocates with new while one of these exists.
+class AllocationCount {
+ public:
+  AllocationCount();
+  ~AllocationCount();
+  std::size_t count() const;
+};
+
+}  // namespace zonepack::testing_support

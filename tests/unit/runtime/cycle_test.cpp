@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cycle.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "runtime/replay/modelled_loader.hpp"
+#include "tests/support/rooms.hpp"
+#include "tests/support/sample_catalog.hpp"
+#include "tests/unit/runtime/allocation_count.hpp"
+
+namespace zonepack {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::Not;
+
+constexpr std::int64_t kPeriod_ns = 10'000'000;
+
+// Three rooms a, b, c in a row (rooms.hpp), 4 slots each, room for two; a load takes 0.1 s.
+class CycleTest : public testing::Test, public EventSink {
+ protected:
+  CycleTest() { events.reserve(4096); }
+
+  void on_event(const Event& event) noexcept override { events.push_back(event); }
+
+  // One cycle, with a frame that tells how far the wheels have come.
+  void step(std::vector<PoseCorrection> fixes = {}, bool with_frame = true) {
+    now_ns += kPeriod_ns;
+    loader.advance_to(now_ns);
+    CanFrame frame;
+    frame.stamp_ns = now_ns;
+    frame.id = 0x311;
+    frame.len = 8;
+    put(frame, 0, left_mm);
+    put(frame, 4, right_mm);
+    const testing_support::AllocationCount allocated;
+    cycle.run(now_ns, {&frame, with_frame ? 1u : 0u}, fixes);
+    allocations += allocated.count();
+  }
+
+  void drive(double metres, double metres_per_cycle = 0.01) {
+    for (double done = 0; done < metres; done += metres_per_cycle) {
+      left_mm += static_cast<std::int32_t>(metres_per_cycle * 1000);
+      right_mm += static_cast<std::int32_t>(metres_per_cycle * 1000);
+      step();
+    }
+  }
+
+  void stand(int cycles) {
+    for (int i = 0; i < cycles; ++i) step();
+  }
+
+  PoseCorrection fix(double x_m, double y_m, double yaw_rad = 0) const {
+    return {now_ns, now_ns, {x_m, y_m, yaw_rad}, 0.03, 0.03, 0.01};
+  }
+
+  // The fixes of one second apart that make a pose trusted.
+  void trust(double x_m, double y_m) {
+    step();
+    step({fix(x_m, y_m)});
+    stand(20);
+    step({fix(x_m, y_m)});
+    stand(20);
+    ASSERT_TRUE(cycle.state().pose.trusted);
+  }
+
+  std::vector<std::string> words() const {
+    std::vector<std::string> all;
+    for (const Event& event : events) {
+      std::string word = to_string(event.kind);
+      if (event.zone != kNoZone) word += " " + graph.name(event.zone);
+      all.push_back(word);
+    }
+    return all;
+  }
+
+  static void put(CanFrame& frame, std::size_t at, std::int32_t value) {
+    const auto bits = static_cast<std::uint32_t>(value);
+    for (std::size_t i = 0; i < 4; ++i) {
+      frame.data[at + i] = static_cast<std::uint8_t>(bits >> (24 - 8 * i));
+    }
+  }
+
+  const ZoneGraph graph = testing_support::three_rooms();
+  const std::vector<ZoneNeed> needs = std::vector<ZoneNeed>(3, ZoneNeed{4, 10});
+  const std::vector<LoadWork> work = std::vector<LoadWork>(3, LoadWork{100, 0});
+  const std::vector<float> load_s = std::vector<float>(3, 0.12f);
+  Residency memory{3, {800, 0, 100, 0, {8, 20}, 0}};
+  ModelledLoader loader{8, work, {1000, 1000}, nullptr};
+  Cycle cycle{testing_support::sample_robot(), {graph, needs, load_s, {}, memory, loader, *this}};
+  std::vector<Event> events;
+  std::size_t allocations = 0;
+  std::int64_t now_ns = 1'000'000'000;
+  std::int32_t left_mm = 5000, right_mm = 5000;
+};
+
+TEST_F(CycleTest, DoesNothingBeforeAPoseIsKnown) {
+  stand(100);
+  EXPECT_EQ(cycle.state().zone, kNoZone);
+  EXPECT_FALSE(cycle.state().map_ready);
+  EXPECT_EQ(memory.charged(), 0u);
+  EXPECT_THAT(words(), ElementsAre("start", "odometry_resumed"));
+}
+
+TEST_F(CycleTest, LoadsTheZoneOfTheFirstFixAndIsReadyOnceItIsTrusted) {
+  step();
+  step({fix(2, 2)});
+  EXPECT_EQ(cycle.state().zone, 0u);
+  EXPECT_EQ(memory.state(0), ZoneState::kFilling);
+  stand(20);
+  EXPECT_TRUE(cycle.state().zone_resident);
+  EXPECT_FALSE(cycle.state().map_ready);
+  step({fix(2, 2)});
+  EXPECT_TRUE(cycle.state().map_ready);
+}
+
+TEST_F(CycleTest, WantsTheZonesOfAllHypothesesUntilOneIsTrusted) {
+  step();
+  step({fix(2, 2)});
+  stand(20);
+  step({fix(10, 2)});  // 8 m off: another hypothesis
+  stand(40);
+  EXPECT_TRUE(memory.resident(0));
+  EXPECT_TRUE(memory.resident(2));
+  step({fix(10, 2)});
+  EXPECT_EQ(cycle.state().zone, 2u);
+  EXPECT_TRUE(cycle.state().map_ready);
+}
+
+TEST_F(CycleTest, HasTheNextZoneReadyWhenTheRobotEntersIt) {
+  trust(2, 2);
+  drive(2.5);  // through the door at x = 4
+  EXPECT_EQ(cycle.state().zone, 1u);
+  EXPECT_TRUE(cycle.state().zone_resident);
+  EXPECT_THAT(words(), Not(Contains("not_keeping_up b")));
+  EXPECT_EQ(cycle.state().zone_switches, 1u);
+  drive(4.0);  // through the door at x = 8: room for two only
+  EXPECT_EQ(cycle.state().zone, 2u);
+  EXPECT_FALSE(memory.resident(0));
+  EXPECT_TRUE(memory.resident(1));
+}
+
+TEST_F(CycleTest, FollowsTheFixesAtOnceWhenTheyMoveThePose) {
+  trust(2, 2);
+  for (int i = 0; i < 3; ++i) {
+    step({fix(10, 2)});
+    stand(30);
+  }
+  EXPECT_EQ(cycle.state().zone, 2u);
+  EXPECT_THAT(words(), Contains("pose_reinitialised"));
+  EXPECT_THAT(words(), Contains("correction_rejected"));
+  EXPECT_TRUE(cycle.state().zone_resident);
+}
+
+TEST_F(CycleTest, TellsWhenOdometryIsMissingAndWhenItIsBack) {
+  trust(2, 2);
+  events.clear();
+  for (int i = 0; i < 50; ++i) step({}, false);  // 0.5 s, over the timeout of 0.3 s
+  EXPECT_THAT(words(), ElementsAre("odometry_stale"));
+  step();
+  EXPECT_THAT(words(), ElementsAre("odometry_stale", "odometry_resumed"));
+}
+
+TEST_F(CycleTest, TakesNoMemoryWhileRunning) {
+  trust(2, 2);
+  drive(6.5);
+  step({fix(2, 2)});  // an outlier
+  for (int i = 0; i < 50; ++i) step({}, false);
+  EXPECT_GT(memory.counters().zones_unloaded, 0u);
+  EXPECT_EQ(allocations, 0u);
+}
+
+TEST_F(CycleTest, StampsEventsWithTheTimeSinceTheFirstCycle) {
+  trust(2, 2);
+  cycle.finish();
+  EXPECT_EQ(events.front().t_ns, 0);
+  EXPECT_EQ(events.back().kind, EventKind::kEnd);
+  EXPECT_EQ(events.back().t_ns, static_cast<std::int64_t>(events.back().cycle) * kPeriod_ns);
+  EXPECT_EQ(events.back().x_mm, 2000);
+}
+
+}  // namespace
+}  // namespace zonepack
