@@ -7,7 +7,7 @@ namespace zonepack {
 namespace {
 
 constexpr double kWrongDepth_m = 0.3;
-constexpr double kSamplePeriod_s = 0.1;
+constexpr double kSamplePeriod_s = 0.0999;  // ten a second, rounding aside
 
 // The value that this share of all is not above (nearest rank).
 double percentile(const std::vector<float>& sorted, double share) {

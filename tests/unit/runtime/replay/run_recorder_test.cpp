@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/replay/run_recorder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "tests/support/rooms.hpp"
+
+namespace zonepack {
+namespace {
+
+constexpr std::int64_t kPeriod_ns = 100'000'000;
+
+class NoEvents final : public EventSink {
+ public:
+  void on_event(const Event&) noexcept override {}
+};
+
+// Three rooms (rooms.hpp) and a robot that truly drives from (2, 2) to (6, 2) in 4 s.
+class Recorder : public testing::Test {
+ protected:
+  void cycle(ZoneId tracked, bool blocked = false) {
+    CycleState state;
+    state.zone = tracked;
+    state.blocked = blocked;
+    const auto pose = truth.at(now_ns);
+    state.pose.valid = pose.has_value();
+    if (pose) state.pose.T_map_base = {pose->x_m, pose->y_m + 0.25, 0};
+    recorder.after_cycle(now_ns, state, memory);
+    now_ns += kPeriod_ns;
+  }
+
+  void hold(ZoneId zone, ZoneNeed need) {
+    ASSERT_TRUE(memory.admit(zone, need, Purpose::kApproach, [](const Eviction&) {}).ok());
+    memory.complete(zone, memory.generation(zone), {0, need.slots - 1, need.slots});
+  }
+
+  RunSummary summary() const {
+    RunSummary s;
+    recorder.summarise(memory, s);
+    return s;
+  }
+
+  NoEvents log;
+  const ZoneGraph graph = testing_support::three_rooms();
+  std::vector<ZoneNeed> needs = std::vector<ZoneNeed>(3, ZoneNeed{4, 10});
+  const TruthTrack truth{{{0, {2, 2, 0}}, {4'000'000'000, {6, 2, 0}}}};
+  Residency memory{3, {1000, 200, 100, 25, {}, 0}};
+  RunRecorder recorder{graph, needs, &truth, kPeriod_ns, log};
+  std::int64_t now_ns = 0;
+};
+
+TEST_F(Recorder, CountsTimeWithoutTheTrueZoneOnlyAfterTheFirstZoneIsThere) {
+  cycle(0);
+  cycle(0);
+  hold(0, needs[0]);
+  while (now_ns <= 2'000'000'000) cycle(0);  // the door is at 2 s: x = 4 belongs to a
+  for (int i = 0; i < 5; ++i) cycle(1);      // in b, which is not resident
+  EXPECT_DOUBLE_EQ(summary().start_s, 0.2);
+  EXPECT_DOUBLE_EQ(summary().zone_absent_s, 0.5);
+}
+
+TEST_F(Recorder, CallsTheTrackerWrongOnlyBeyondThirtyCentimetres) {
+  // At 1 m/s: 0.1 m, 0.2 m, 0.3 m are within, 0.4 m and 0.5 m inside b are not.
+  now_ns = 2'100'000'000;
+  for (int i = 0; i < 5; ++i) cycle(0);
+  EXPECT_DOUBLE_EQ(summary().wrong_zone_s, 0.2);
+}
+
+TEST_F(Recorder, FindsALimitExceededThoughTheSumsOfResidencyDoNotShowIt) {
+  hold(0, {4, 10});
+  hold(1, {4, 10});
+  cycle(0);
+  EXPECT_EQ(summary().budget_violations, 0u);
+  needs[1].slots = 5;  // what it really takes: 200 + 9 * 100 > 1000
+  cycle(0);
+  EXPECT_EQ(summary().budget_violations, 1u);
+  needs[1] = {4, 16};  // 26 > 25 signatures
+  cycle(0);
+  EXPECT_EQ(summary().budget_violations, 2u);
+  EXPECT_EQ(summary().peak_charged_bytes, 1100u);
+  EXPECT_EQ(summary().peak_signatures, 26u);
+}
+
+TEST_F(Recorder, MeasuresThePoseAgainstTheTruth) {
+  for (int i = 0; i < 10; ++i) cycle(0);
+  ASSERT_TRUE(summary().pose_error_m);
+  EXPECT_NEAR(summary().pose_error_m->p50, 0.25, 1e-6);
+  EXPECT_NEAR(summary().pose_error_m->max, 0.25, 1e-6);
+}
+
+TEST_F(Recorder, CountsBlockedTime) {
+  cycle(0, true);
+  cycle(0, true);
+  cycle(0, false);
+  EXPECT_DOUBLE_EQ(summary().blocked_s, 0.2);
+}
+
+TEST_F(Recorder, KeepsEveryChangeAndTenSamplesASecondForDrawing) {
+  for (int i = 0; i < 5; ++i) cycle(0);
+  hold(0, needs[0]);
+  cycle(0);
+  const RunTrace trace = recorder.take_trace();
+  ASSERT_EQ(trace.samples.size(), 6u);
+  EXPECT_EQ(trace.samples[4].charged_bytes, 200u);
+  EXPECT_EQ(trace.samples[5].charged_bytes, 600u);
+  EXPECT_EQ(trace.samples[5].resident_signatures, 10u);
+}
+
+}  // namespace
+}  // namespace zonepack
