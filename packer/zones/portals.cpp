@@ -18,7 +18,7 @@ namespace {
 class PortalPlacer {
  public:
   PortalPlacer(const Drawing& drawing, double snap_m, ZonePlan& plan, Findings& findings)
-      : drawing_(drawing), snap_m_(snap_m), plan_(plan), findings_(findings) {
+      : snap_m_(snap_m), plan_(plan), findings_(findings) {
     for (std::uint32_t i = 0; i < plan.zones.size(); ++i) zone_at_[plan.zones[i].name] = i;
     for (const DrawnZone& drawn : drawing.zones) drawn_names_.insert(drawn.zone.name);
     for (const DrawnPortal& portal : drawing.portals) {
@@ -110,7 +110,6 @@ class PortalPlacer {
     return moved;
   }
 
-  const Drawing& drawing_;
   const double snap_m_;
   ZonePlan& plan_;
   Findings& findings_;

@@ -294,7 +294,7 @@ TEST(Split, HoldsForTheHospitalUnderEveryLimit) {
     input.add({std::stod(line.substr(first + 1)), std::stod(line.substr(second + 1))},
               30000 + random() % 40000);
   }
-  for (const ByteCount limit : {4000000, 1500000, 600000}) {
+  for (const ByteCount limit : {4000000u, 1500000u, 600000u}) {
     SCOPED_TRACE("limit " + std::to_string(limit));
     expect_sound(input, input.split(limit), limit);
   }
