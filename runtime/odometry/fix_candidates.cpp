@@ -16,7 +16,7 @@ int rank(const FixCandidates::Candidate& candidate) noexcept {
 }  // namespace
 
 void FixCandidates::guess(const OdometryHistory& history, const UncertainPose& pose) noexcept {
-  all_[0] = {history.newest(), pose, pose, 0, false};
+  all_[0] = {history.newest(), pose, pose, 0, 0, history.back().t_ns, false};
   count_ = 1;
 }
 
@@ -59,17 +59,30 @@ std::optional<FixCandidates::Candidate> FixCandidates::add(const OdometryHistory
     }
   }
   if (best == nullptr) {
-    place_for_new() = {index, fix, history.carry(fix, index, history.newest()), 1, near_guess};
+    place_for_new() = {index,     fix, history.carry(fix, index, history.newest()),
+                       1,         1,   history.at(index).t_ns,
+                       near_guess};
     return std::nullopt;
   }
   best->anchor = std::max(index, best->anchor);
   best->at_anchor = fuse(best_prior, best_fix);
   best->now = history.carry(best->at_anchor, best->anchor, history.newest());
+  best->last_ns = std::max(best->last_ns, history.at(index).t_ns);
   ++best->fixes;
+  ++best->run;
   return *best;
 }
 
-std::size_t FixCandidates::list(std::array<PoseHypothesis, kMaxHypotheses>& into) const noexcept {
+void FixCandidates::interrupt(std::int64_t t_ns) noexcept {
+  const auto end = std::remove_if(all_.begin(), all_.begin() + count_, [t_ns](const Candidate& c) {
+    return t_ns - c.last_ns > kMemory_ns;
+  });
+  count_ = static_cast<std::size_t>(end - all_.begin());
+  for (std::size_t i = 0; i < count_; ++i) all_[i].run = 0;
+}
+
+std::size_t FixCandidates::list(std::array<PoseHypothesis, kMaxHypotheses>& into, std::size_t first,
+                                std::uint32_t least_fixes) const noexcept {
   std::array<const Candidate*, kMaxHypotheses> order{};
   for (std::size_t i = 0; i < count_; ++i) order[i] = &all_[i];
   // Insertion sort; of equals the newer first.
@@ -80,10 +93,11 @@ std::size_t FixCandidates::list(std::array<PoseHypothesis, kMaxHypotheses>& into
       std::swap(order[j], order[j - 1]);
     }
   }
-  for (std::size_t i = 0; i < count_; ++i) {
-    into[i] = {order[i]->now.pose, order[i]->now.covariance, order[i]->fixes};
+  for (std::size_t i = 0; i < count_ && first < into.size(); ++i) {
+    if (order[i]->fixes < least_fixes) continue;
+    into[first++] = {order[i]->now.pose, order[i]->now.covariance, order[i]->fixes};
   }
-  return count_;
+  return first;
 }
 
 void FixCandidates::after_step(const UncertainPose& step) noexcept {

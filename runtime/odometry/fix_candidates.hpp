@@ -25,7 +25,9 @@ class FixCandidates {
     UncertainPose at_anchor;
     UncertainPose now;  // at the newest entry
     std::uint32_t fixes = 0;
-    bool near_guess = false;  // its first fix lay within the gate of the start that was given
+    std::uint32_t run = 0;     // of these, since interrupt()
+    std::int64_t last_ns = 0;  // when the last of them was taken
+    bool near_guess = false;   // its first fix lay within the gate of the start that was given
   };
 
   void clear() noexcept { count_ = 0; }
@@ -39,9 +41,14 @@ class FixCandidates {
   std::optional<Candidate> add(const OdometryHistory& history, const UncertainPose& fix,
                                std::uint64_t index, double gate_chi2) noexcept;
 
-  // Best first: those with most fixes; a given start before a single fix that contradicts it.
-  // Returns how many there are.
-  std::size_t list(std::array<PoseHypothesis, kMaxHypotheses>& into) const noexcept;
+  // A fix was accepted elsewhere: runs begin anew, and who has no fix of the last kMemory_ns is
+  // gone.
+  void interrupt(std::int64_t t_ns) noexcept;
+
+  // Writes those with at least `least_fixes` into the places from `first` on, best first: those
+  // with most fixes; a given start before a single fix that contradicts it. Returns where it ended.
+  std::size_t list(std::array<PoseHypothesis, kMaxHypotheses>& into, std::size_t first,
+                   std::uint32_t least_fixes) const noexcept;
 
   // What happens to the history, told before or after as named.
   void after_step(const UncertainPose& step) noexcept;  // at its newest end
@@ -52,6 +59,8 @@ class FixCandidates {
   bool stand_on(std::uint64_t index) const noexcept;
 
  private:
+  static constexpr std::int64_t kMemory_ns = 6'000'000'000;
+
   Candidate& place_for_new() noexcept;
 
   std::array<Candidate, kMaxHypotheses> all_;

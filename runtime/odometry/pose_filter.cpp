@@ -244,16 +244,16 @@ CorrectionVerdict PoseFilter::place(const UncertainPose& fix, std::uint64_t inde
   entry.has_fix = true;
   entry.state = fuse(entry.state, fix);
   history_.replay_from(index);
-  candidates_.clear();
+  candidates_.interrupt(entry.t_ns);
   return Verdict::kUsed;
 }
 
 // Untrusted: a hypothesis. Trusted: refused, but a run of such fixes that agree is believed.
 CorrectionVerdict PoseFilter::support(const UncertainPose& fix, std::uint64_t index) noexcept {
   const auto confirmed = candidates_.add(history_, fix, index, settings_.gate_chi2);
-  if (!confirmed || confirmed->fixes < (trusted_ ? settings_.reinit_fixes : kFixesForTrust)) {
-    return trusted_ ? Verdict::kOutlier : Verdict::kHypothesis;
-  }
+  const bool believed = confirmed && (trusted_ ? confirmed->run >= settings_.reinit_fixes
+                                               : confirmed->fixes >= kFixesForTrust);
+  if (!believed) return trusted_ ? Verdict::kOutlier : Verdict::kHypothesis;
   const Verdict verdict = trusted_ ? Verdict::kReinitialised : Verdict::kTrusted;
   adopt(*confirmed);
   return verdict;
@@ -274,9 +274,11 @@ void PoseFilter::list_hypotheses() noexcept {
   if (trusted_) {
     const UncertainPose& newest = history_.back().state;
     hypotheses_[0] = {newest.pose, newest.covariance, kFixesForTrust};
-    hypothesis_count_ = 1;
+    // Refused fixes that agree again and again, in between accepted ones: nobody knows who is
+    // right.
+    hypothesis_count_ = candidates_.list(hypotheses_, 1, settings_.reinit_fixes);
   } else {
-    hypothesis_count_ = candidates_.list(hypotheses_);
+    hypothesis_count_ = candidates_.list(hypotheses_, 0, 0);
   }
 }
 
@@ -287,7 +289,7 @@ std::span<const PoseHypothesis> PoseFilter::hypotheses() const noexcept {
 PoseEstimate PoseFilter::estimate(std::int64_t now_ns) const noexcept {
   PoseEstimate estimate;
   estimate.t_ns = now_ns;
-  estimate.trusted = trusted_;
+  estimate.trusted = trusted_ && hypothesis_count_ == 1;
   if (hypothesis_count_ == 0) return estimate;
   const UncertainPose newest = {hypotheses_[0].T_map_base, hypotheses_[0].covariance};
   const UncertainPose now =

@@ -70,6 +70,7 @@ struct PoseFilterCounters {
 // Before two fixes have agreed through odometry nothing is trusted, and each fix is a hypothesis of
 // its own. Once trusted, fixes outside the gate are refused; when reinit_fixes of them agree with
 // each other, with none accepted in between, the filter moves there: it cannot be locked out.
+// When as many agree in between accepted ones, trust is suspended and both places are listed.
 //
 // Real-time: all memory is taken in the constructor. predict() is O(1); correct() and the end
 // of a pause go through the history at most 2 * kMaxHypotheses + 2 times (252 entries with the
@@ -95,7 +96,8 @@ class PoseFilter {
   // fresh.
   PoseEstimate estimate(std::int64_t now_ns) const noexcept;
 
-  // All places the robot may be, best first: one when trusted, none before anything is known.
+  // All places the robot may be, best first: one when trusted, none before anything is
+  // known.
   std::span<const PoseHypothesis> hypotheses() const noexcept;
 
   const PoseFilterCounters& counters() const noexcept { return counters_; }

@@ -189,6 +189,29 @@ TEST(PoseFilter, RefusedFixesThatDisagreeOrAreInterruptedDoNotMoveThePose) {
   EXPECT_LT(drive.error_m(), 1e-9);
 }
 
+// Two localizers that contradict each other, each true to itself: nobody knows who is right.
+TEST(PoseFilter, IsNotTrustedWhileRefusedFixesKeepAgreeingWithEachOther) {
+  Drive drive;
+  drive.trust();
+  for (int i = 1; i <= 3; ++i) {
+    drive.steps(50);
+    EXPECT_EQ(drive.correct_now(3, 0, 0), Verdict::kOutlier);
+    EXPECT_EQ(drive.filter.estimate(drive.now()).trusted, i < 3);
+    drive.steps(50);
+    EXPECT_EQ(drive.correct_now(), Verdict::kUsed);
+  }
+  ASSERT_EQ(drive.filter.hypotheses().size(), 2u);
+  const Pose2 other = drive.filter.hypotheses()[1].T_map_base;
+  EXPECT_NEAR(other.x_m, drive.truth.back().x_m + 3, 1e-9);
+  EXPECT_LT(drive.error_m(), 1e-9);
+  for (int i = 0; i < 7; ++i) {
+    drive.steps(50);
+    EXPECT_EQ(drive.correct_now(), Verdict::kUsed);
+  }
+  EXPECT_TRUE(drive.filter.estimate(drive.now()).trusted);
+  EXPECT_EQ(drive.filter.hypotheses().size(), 1u);
+}
+
 // Trusted in the wrong place, every second fix wrong in its own way: good ones still win.
 TEST(PoseFilter, IsNotLockedOutWhileEverySecondFixIsWrong) {
   Drive drive;
