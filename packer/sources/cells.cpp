@@ -80,13 +80,10 @@ float float_cell(const SqliteQuery& row, int column, const Place& place) {
     place.damaged(std::string("expected a number, found ") + storage_class(type));
   }
   const double value = row.real(column);
-  const bool in_range = std::fabs(value) <= std::numeric_limits<float>::max() || std::isinf(value);
-  const float narrow = in_range ? static_cast<float>(value) : 0.0f;
-  const bool whole_in_double = type == SQLITE_FLOAT || std::fabs(value) <= 0x1p53;
-  if (!in_range || !whole_in_double || static_cast<double>(narrow) != value) {
-    place.damaged("expected a float32, found " + shortest(value));
+  if (std::fabs(value) > std::numeric_limits<float>::max() && !std::isinf(value)) {
+    place.damaged("expected a number that a float32 can hold, found " + shortest(value));
   }
-  return narrow;
+  return static_cast<float>(value);
 }
 
 float float_cell(const SqliteQuery& row, int column, const Place& place, float if_null) {

@@ -20,7 +20,7 @@ std::int32_t int32_cell(const SqliteQuery& row, int column, const Place& place);
 std::int32_t int32_cell(const SqliteQuery& row, int column, const Place& place,
                         std::int32_t if_null);
 
-// Numbers that a float32 holds exactly.
+// Numbers in the range of float32, rounded to the nearest as RTAB-Map does when it reads them.
 float float_cell(const SqliteQuery& row, int column, const Place& place);
 float float_cell(const SqliteQuery& row, int column, const Place& place, float if_null);
 

@@ -169,11 +169,11 @@ std::vector<Case> cases() {
        "2, 3, 4 or 6"},
       {"GridNotFloat", set("obstacle_cells"), zip(Matrix{1, 4, 8, Bytes(8)}), "Data.obstacle_cells",
        "found 2 x uint8"},
-      {"CellSizeNotFloat32",
-       "UPDATE Data SET cell_size=0.05 WHERE id=2",
+      {"CellSizeTooLarge",
+       "UPDATE Data SET cell_size=1e300 WHERE id=2",
        {},
        "Data.cell_size",
-       "expected a float32, found 0.05"},
+       "expected a number that a float32 can hold, found 1e+300"},
       {"ViewPointText",
        "UPDATE Data SET view_point_z='up' WHERE id=2",
        {},
@@ -222,13 +222,7 @@ std::vector<Case> cases() {
        {},
        "Feature.word_id",
        "expected an integer, found text"},
-      {"PositionNotFloat32",
-       feature("pos_x=0.1"),
-       {},
-       "Feature.pos_x",
-       "expected a float32, found 0.1"},
       {"PositionTooLarge", feature("pos_y=1e39"), {}, "Feature.pos_y", "float32"},
-      {"SizeNotFloat32", feature("size=16777217"), {}, "Feature.size", "float32"},
       {"PointText",
        feature("depth_z='far'"),
        {},
@@ -416,6 +410,19 @@ TEST(Damage, OfOnePageOfTheFileSparesTheSignaturesElsewhere) {
     EXPECT_THAT(error.what(), HasSubstr(".recover"));
   }
   EXPECT_EQ(database.read(3, {false, true, true, true, true, true}).links.size(), 1u);
+}
+
+// RTAB-Map itself reads these columns into float32, whatever wrote them.
+TEST(RtabmapDatabase, RoundsNumbersToFloat32AsRtabmapDoes) {
+  const test_support::TemporaryFolder folder;
+  const std::filesystem::path path = folder / "map.db";
+  test_support::write_rtabmap_database(path, test_support::one_of_everything("0.23.8"));
+  test_support::execute(path, "UPDATE Feature SET pos_x=0.1 WHERE node_id=2");
+  test_support::execute(path, "UPDATE Data SET cell_size=0.05 WHERE id=2");
+  RtabmapDatabase database(path);
+  const SignatureRecord record = database.read(2, PayloadSet());
+  EXPECT_EQ(record.features.x.front(), 0.1F);
+  EXPECT_EQ(record.grid->cell_size, 0.05F);
 }
 
 }  // namespace
