@@ -93,7 +93,9 @@ void print(const BudgetPlan& b, const MapPlan& plan, std::ostream& out) {
   out << "budget " << in_bytes(b.bytes) << ": " << b.slots << " slots\n";
   if (!b.suffices) {
     out << "  BELOW THE SMALLEST by " << plan.smallest.bytes - b.bytes
-        << " bytes: the robot would refuse to start\n";
+        << " bytes: the robot would "
+        << (b.zones_without_room.empty() ? "enter a zone before it is loaded\n"
+                                         : "refuse to start\n");
   }
   for (const ZoneId zone : b.zones_without_room) {
     out << "  zone " << plan.zones[zone].name << " does not fit\n";

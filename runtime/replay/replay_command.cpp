@@ -22,9 +22,9 @@
 namespace zonepack {
 namespace {
 
-int fail(const std::string& message) {
+int fail(const std::string& message, int exit_code = 1) {
   std::cerr << "zoned replay: " << message << '\n';
-  return 1;
+  return exit_code;
 }
 
 bool read_number(std::string_view text, double& value) {
@@ -163,11 +163,11 @@ std::optional<StartChoice> parse_start(const std::string& text) {
 }
 
 int run_replay(const ReplayArguments& arguments) {
+  if (arguments.start.kind == StartChoice::Kind::kTruth && arguments.truth.empty()) {
+    return fail("--start truth needs --truth FILE", 2);
+  }
   Inputs inputs;
   if (const auto fault = read_inputs(arguments, inputs)) return fail(*fault);
-  if (arguments.start.kind == StartChoice::Kind::kTruth && !inputs.truth) {
-    return fail("--start truth needs --truth FILE");
-  }
   CanLogReader log(arguments.can, inputs.settings.can.interface);
   if (const auto opened = log.open(); !opened) return fail(log.explain(opened.error()));
 
