@@ -28,13 +28,20 @@ Result<ZoneLoad> ZoneLoad::begin(const Catalog& catalog, ZoneId zone,
   return ZoneLoad(std::move(*pack), mask, slots, read_buffer);
 }
 
-// Reads ahead as many wanted chunks as follow each other and fit the buffer.
-Result<ByteSpan> ZoneLoad::stored(const fb::ChunkEntry& entry) {
+// Reads a raw chunk into its place. Before others, reads ahead as many wanted chunks as follow each
+// other, are compressed and fit the buffer.
+Result<ByteSpan> ZoneLoad::stored(const fb::ChunkEntry& entry, std::byte* place) {
+  if (entry.codec() == fb::ChunkCodec::Raw) {
+    const std::span<std::byte> out(place, entry.stored_size());
+    if (const auto read = pack_.file().read_at(entry.offset(), out); !read) return read.error();
+    return ByteSpan(out);
+  }
   const std::uint64_t end = entry.offset() + entry.stored_size();
   if (entry.offset() < buffered_from_ || end > buffered_to_) {
     std::uint64_t to = end;
     const auto& all = *pack_.index().chunks();
     for (std::uint32_t i = next_ + 1; i < all.size() && wanted(*all.Get(i)); ++i) {
+      if (all.Get(i)->codec() == fb::ChunkCodec::Raw) break;
       const std::uint64_t more = to + all.Get(i)->stored_size();
       if (more - entry.offset() > buffer_.size()) break;
       to = more;
@@ -52,10 +59,11 @@ Result<bool> ZoneLoad::step() {
   while (next_ < all.size() && !wanted(*all.Get(next_))) ++next_;
   if (next_ == all.size()) return false;
   const fb::ChunkEntry& entry = *all.Get(next_);
-  const Result<ByteSpan> bytes = stored(entry);
-  if (!bytes) return bytes.error();
   const Placement::Place place = placement_.add(entry.decoded_size());
-  const Result<ByteSpan> chunk = decode_chunk(entry, *bytes, slots_[place.slot] + place.offset);
+  std::byte* const out = slots_[place.slot] + place.offset;
+  const Result<ByteSpan> bytes = stored(entry, out);
+  if (!bytes) return bytes.error();
+  const Result<ByteSpan> chunk = decode_chunk(entry, *bytes, out);
   if (!chunk) return chunk.error();
   chunks_.push_back({entry.kind(), *chunk});
   stored_bytes_ += entry.stored_size();

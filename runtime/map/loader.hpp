@@ -41,7 +41,7 @@ class ZoneLoad {
            std::span<std::byte> read_buffer)
       : pack_(std::move(pack)), mask_(mask), slots_(slots), buffer_(read_buffer) {}
 
-  Result<ByteSpan> stored(const fb::ChunkEntry& entry);
+  Result<ByteSpan> stored(const fb::ChunkEntry& entry, std::byte* place);
   bool wanted(const fb::ChunkEntry& entry) const noexcept {
     return (mask_ & mask_of(entry.kind())) != 0;
   }

@@ -92,7 +92,7 @@ Result<ByteSpan> decode_chunk(const fb::ChunkEntry& entry, ByteSpan stored,
   if (stored.size() != entry.stored_size()) return {ErrorCode::kTruncated, at};
   if (xxh3(stored) != entry.xxh3()) return {ErrorCode::kBadChecksum, at};
   if (entry.codec() == fb::ChunkCodec::Raw) {
-    std::memcpy(out, stored.data(), stored.size());
+    if (stored.data() != out) std::memcpy(out, stored.data(), stored.size());
   } else {
     const int decoded = LZ4_decompress_safe(
         reinterpret_cast<const char*>(stored.data()), reinterpret_cast<char*>(out),

@@ -54,7 +54,7 @@ Result<const fb::PackIndex*> check_index(ByteSpan header_16_bytes, ByteSpan inde
 // Checks the stored bytes of a chunk (length, XXH3) and decodes them to exactly
 // entry.decoded_size() bytes at `out`, which must be aligned to 16 and have kSlotBytes of room;
 // then checks the structure. No allocation. `stored` must be private memory: bytes that change
-// meanwhile defeat the checks.
+// meanwhile defeat the checks. A raw chunk may stand at `out` already.
 Result<ByteSpan> decode_chunk(const fb::ChunkEntry& entry, ByteSpan stored,
                               std::byte* out) noexcept;
 

@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: Apache-2.0
+# Benchmarks: run by hand, on a machine that does nothing else. Each says what it compares.
+
+if(ZONEPACK_BUILD_BENCHMARKS)
+  add_executable(decode_bench ${CMAKE_CURRENT_LIST_DIR}/decode_bench.cpp)
+  zonepack_settings(decode_bench)
+  target_link_libraries(decode_bench PRIVATE zonepack_core)
+  if(TARGET zonepack)
+    find_package(SQLite3 REQUIRED)
+    find_package(ZLIB REQUIRED)
+    add_executable(read_unzip_compress ${CMAKE_CURRENT_LIST_DIR}/read_unzip_compress.cpp)
+    zonepack_settings(read_unzip_compress)
+    target_link_libraries(read_unzip_compress PRIVATE zonepack_pack_format SQLite::SQLite3 ZLIB::ZLIB
+                          Threads::Threads)
+  endif()
+endif()
