@@ -31,6 +31,7 @@ Result<Catalog> Catalog::open(const std::string& folder, PayloadMask payload) {
   const MapCosts costs = map_costs(manifest, payload);
   catalog.fixed_bytes = costs.fixed_bytes;
   catalog.smallest = smallest_budget(manifest, costs, {});
+  catalog.zones.reserve(manifest.zones()->size());
   for (const fb::Zone* zone : *manifest.zones()) {
     CatalogZone& entry = catalog.zones.emplace_back();
     entry.name = zone->name()->str();
@@ -48,6 +49,7 @@ Result<Catalog> Catalog::open(const std::string& folder, PayloadMask payload) {
     std::copy(zone->pack_digest()->begin(), zone->pack_digest()->end(), entry.pack_digest.begin());
   }
   if (manifest.portals() != nullptr) {
+    catalog.portals.reserve(manifest.portals()->size());
     for (const fb::Portal* portal : *manifest.portals()) {
       catalog.portals.push_back(
           {text_of(portal->name()),

@@ -39,7 +39,9 @@ class ZoneLoad {
  private:
   ZoneLoad(PackReader pack, PayloadMask mask, std::span<std::byte* const> slots,
            std::span<std::byte> read_buffer)
-      : pack_(std::move(pack)), mask_(mask), slots_(slots), buffer_(read_buffer) {}
+      : pack_(std::move(pack)), mask_(mask), slots_(slots), buffer_(read_buffer) {
+    chunks_.reserve(pack_.index().chunks()->size());
+  }
 
   Result<ByteSpan> stored(const fb::ChunkEntry& entry, std::byte* place);
   bool wanted(const fb::ChunkEntry& entry) const noexcept {

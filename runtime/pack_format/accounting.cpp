@@ -6,12 +6,22 @@
 namespace zonepack {
 namespace {
 
-std::uint64_t vertices_of(const fb::Zone& zone) {
-  std::uint64_t count = zone.outer()->points()->size();
+ByteCount ring_bytes(const fb::Ring& ring) {
+  return kTableBytesPerRing + ring.points()->size() * kTableBytesPerVertex;
+}
+
+ByteCount table_bytes(const fb::Zone& zone) {
+  const std::uint64_t text =
+      zone.name()->size() + (zone.zone_type() == nullptr ? 0 : zone.zone_type()->size());
+  ByteCount bytes = kTableBytesPerZone + text * kTableBytesPerNameByte + ring_bytes(*zone.outer());
   if (zone.holes() != nullptr) {
-    for (const fb::Ring* hole : *zone.holes()) count += hole->points()->size();
+    for (const fb::Ring* hole : *zone.holes()) bytes += ring_bytes(*hole);
   }
-  return count;
+  return bytes;
+}
+
+ByteCount table_bytes(const fb::Portal& portal) {
+  return kTableBytesPerPortal + (portal.name() == nullptr ? 0 : portal.name()->size());
 }
 
 std::uint64_t chunks_of(const fb::Zone& zone) {
@@ -24,18 +34,18 @@ std::uint64_t chunks_of(const fb::Zone& zone) {
 
 MapCosts map_costs(const fb::Manifest& manifest, PayloadMask wanted) {
   MapCosts costs;
-  std::uint64_t vertices = 0;
+  ByteCount tables = kTableBytesPerMap;
   std::uint64_t most_chunks = 0;
   for (const fb::Zone* zone : *manifest.zones()) {
     costs.zone_slots.push_back(zone_slots(manifest, *zone, wanted));
-    vertices += vertices_of(*zone);
+    tables += table_bytes(*zone);
     most_chunks = std::max(most_chunks, chunks_of(*zone));
   }
-  const std::uint64_t portals = manifest.portals() == nullptr ? 0 : manifest.portals()->size();
-  costs.fixed_bytes = kTableBytesPerMap + kReadBufferBytes + kIndexBytesPerPack +
-                      most_chunks * kIndexBytesPerChunk +
-                      manifest.zones()->size() * kTableBytesPerZone +
-                      vertices * kTableBytesPerVertex + portals * kTableBytesPerPortal;
+  if (manifest.portals() != nullptr) {
+    for (const fb::Portal* portal : *manifest.portals()) tables += table_bytes(*portal);
+  }
+  costs.fixed_bytes =
+      tables + kReadBufferBytes + kIndexBytesPerPack + most_chunks * kIndexBytesPerChunk;
   return costs;
 }
 

@@ -16,14 +16,16 @@
 namespace zonepack {
 
 // Per item, what the runtime's own tables take; a test holds them against the real allocations.
-inline constexpr ByteCount kTableBytesPerZone = 512;  // catalog, residency, tracker, graph, strings
+inline constexpr ByteCount kTableBytesPerZone = 640;    // catalog, residency, keeper, graph
+inline constexpr ByteCount kTableBytesPerNameByte = 4;  // two names, the pack's, rounding
+inline constexpr ByteCount kTableBytesPerRing = 96;
 inline constexpr ByteCount kTableBytesPerVertex = 32;
 inline constexpr ByteCount kTableBytesPerPortal = 192;
 inline constexpr ByteCount kTableBytesPerSlot = 96;  // chain, places of chunks
 inline constexpr ByteCount kTableBytesPerMap = 16 * kKiB;
 // Stored bytes of chunks on their way into slots; the index of the pack being read comes on top.
 inline constexpr ByteCount kReadBufferBytes = 64 * kKiB;
-inline constexpr ByteCount kIndexBytesPerChunk = 72;
+inline constexpr ByteCount kIndexBytesPerChunk = 96;  // its entry, and where it was loaded to
 inline constexpr ByteCount kIndexBytesPerPack = 512;
 
 struct MapCosts {

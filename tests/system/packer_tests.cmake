@@ -25,4 +25,12 @@ if(TARGET zonepack)
                    ${all_payloads})
   set_tests_properties(system/round_trip_hospital_small system/round_trip_some_payloads
                        system/round_trip_hospital PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
+
+  # A program of its own, because it replaces operator new.
+  file(GLOB memory_test_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/memory/*.cpp)
+  add_executable(map_memory_test ${memory_test_sources})
+  zonepack_settings(map_memory_test)
+  target_link_libraries(map_memory_test PRIVATE zonepack_packer_test_support zonepack_packer
+                        zonepack_runtime GTest::gtest GTest::gtest_main)
+  gtest_discover_tests(map_memory_test TEST_PREFIX "system/" DISCOVERY_TIMEOUT 60)
 endif()
