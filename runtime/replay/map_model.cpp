@@ -14,17 +14,21 @@ NeedSum pair_of(const CatalogZone& a, const CatalogZone& b) {
   return {std::uint64_t{a.slots} + b.slots, std::uint64_t{a.signatures} + b.signatures};
 }
 
-// The most slots and the most signatures of a zone with one neighbour; they may be different pairs.
-NeedSum largest_pair(const Catalog& catalog) {
+// The most slots and the most signatures that a zone with one neighbour takes beside the pinned
+// zones, which are held anyway; they may be different pairs.
+NeedSum largest_pair(const Catalog& catalog, const std::vector<ZoneId>& pinned) {
+  std::vector<ZoneNeed> needs = needs_of(catalog);
+  for (const ZoneId zone : pinned) needs[zone] = {};
   NeedSum most;
-  const auto raise = [&most](NeedSum need) {
-    most.slots = std::max(most.slots, need.slots);
-    most.signatures = std::max(most.signatures, need.signatures);
+  const auto raise = [&](ZoneId a, ZoneId b) {
+    NeedSum pair;
+    pair.add(needs[a]);
+    if (b != a) pair.add(needs[b]);
+    most.slots = std::max(most.slots, pair.slots);
+    most.signatures = std::max(most.signatures, pair.signatures);
   };
-  for (const CatalogZone& zone : catalog.zones) raise({zone.slots, zone.signatures});
-  for (const CatalogPortal& portal : catalog.portals) {
-    raise(pair_of(catalog.zones[portal.zone_a], catalog.zones[portal.zone_b]));
-  }
+  for (ZoneId zone = 0; zone < needs.size(); ++zone) raise(zone, zone);
+  for (const CatalogPortal& portal : catalog.portals) raise(portal.zone_a, portal.zone_b);
   return most;
 }
 
@@ -73,7 +77,8 @@ std::vector<float> load_times_of(const std::vector<LoadWork>& work, const LoadRa
 
 ResidencyLimits limits_for(const Catalog& catalog, std::optional<ByteCount> budget,
                            std::uint64_t max_signatures, const std::vector<ZoneId>& pinned) {
-  ByteCount smallest = catalog.smallest.bytes;
+  const NeedSum pair = largest_pair(catalog, pinned);
+  ByteCount smallest = charged_with(catalog.fixed_bytes, pair.slots);
   for (const ZoneId zone : pinned) smallest += catalog.zones[zone].slots * kChargedPerSlot;
   ByteCount whole = catalog.fixed_bytes;
   for (const CatalogZone& zone : catalog.zones) whole += zone.slots * kChargedPerSlot;
@@ -82,7 +87,7 @@ ResidencyLimits limits_for(const Catalog& catalog, std::optional<ByteCount> budg
   limits.fixed = catalog.fixed_bytes;
   limits.slot_bytes = kChargedPerSlot;
   limits.max_signatures = max_signatures;
-  limits.largest_pair = largest_pair(catalog);
+  limits.largest_pair = pair;
   return limits;
 }
 

@@ -33,4 +33,14 @@ if(TARGET zonepack)
   target_link_libraries(map_memory_test PRIVATE zonepack_packer_test_support zonepack_packer
                         zonepack_runtime GTest::gtest GTest::gtest_main)
   gtest_discover_tests(map_memory_test TEST_PREFIX "system/" DISCOVERY_TIMEOUT 60)
+
+  file(GLOB build_test_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/build/*.cpp)
+  add_executable(build_test ${build_test_sources}
+                 ${CMAKE_CURRENT_LIST_DIR}/round_trip/expected_signature.cpp)
+  zonepack_settings(build_test)
+  target_compile_definitions(build_test PRIVATE ZONEPACK_PROGRAM="$<TARGET_FILE:zonepack>")
+  target_link_libraries(build_test PRIVATE zonepack_packer_test_support GTest::gmock GTest::gtest
+                        GTest::gtest_main)
+  add_dependencies(build_test zonepack)
+  gtest_discover_tests(build_test TEST_PREFIX "system/" DISCOVERY_TIMEOUT 60)
 endif()

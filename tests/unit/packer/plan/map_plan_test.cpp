@@ -5,6 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "packer/build/manifest_writer.hpp"
+#include "platform/atomic_file.hpp"
+#include "runtime/map/catalog.hpp"
+#include "runtime/replay/map_model.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -48,6 +52,9 @@ class RowOfRooms {
     file_ = manifest_bytes(content);
   }
   const fb::Manifest& manifest() const { return **check_manifest(file_); }
+  std::string_view text() const {
+    return {reinterpret_cast<const char*>(file_.data()), file_.size()};
+  }
 
  private:
   Bytes file_;
@@ -87,6 +94,26 @@ TEST(MapPlan, HoldsPinnedZonesBesideEveryPair) {
   EXPECT_EQ(plan.smallest.zone_b, kD);
   EXPECT_TRUE(plan.zones[kB].pinned);
   EXPECT_FALSE(plan.zones[kA].pinned);
+}
+
+// What plan promises is what the robot's own Residency keeps.
+TEST(MapPlan, PromisesTheBudgetUnderWhichTheRobotPins) {
+  const RowOfRooms map;
+  const test_support::TemporaryFolder folder;
+  ASSERT_TRUE(write_file_atomically(folder / std::string(kManifestName), map.text()).ok());
+  const Result<Catalog> catalog = Catalog::open(folder.path().string(), kFeatures);
+  ASSERT_TRUE(catalog.ok());
+  for (const ZoneId zone : {kA, kB, kC, kD}) {
+    const ZoneId pinned[] = {zone};
+    const ByteCount smallest =
+        plan_map(map.manifest(), kFeatures, pinned, std::nullopt).smallest.bytes;
+    const ResidencyLimits limits = limits_for(*catalog, smallest, 0, {zone});
+    Residency enough(catalog->zones.size(), limits);
+    EXPECT_TRUE(enough.pin(zone, needs_of(*catalog)[zone]).ok()) << zone;
+    Residency less(catalog->zones.size(), limits_for(*catalog, smallest - 1, 0, {zone}));
+    EXPECT_FALSE(less.pin(zone, needs_of(*catalog)[zone]).ok()) << zone;
+    EXPECT_EQ(limits_for(*catalog, std::nullopt, 0, {zone}).budget, smallest);
+  }
 }
 
 TEST(MapPlan, SaysThatTheSmallestBudgetSufficesAndOneByteLessDoesNot) {

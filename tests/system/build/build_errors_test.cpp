@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `zonepack build` says when it cannot do its work, and what it leaves behind.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "tests/system/build/packer_program.hpp"
+
+namespace zonepack::system_test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+TEST(BuildUsage, ExitsWith2AndNamesTheOption) {
+  const Packer packer;
+  packer.write_database(four_signatures());
+  const std::pair<std::string, std::string> cases[] = {
+      {"build --zones zones.geojson --out map", "--db"},
+      {"build --db map.db --out map", "--zones"},
+      {"build --db map.db --zones zones.geojson", "--out"},
+      {"build --db map.db --zones zones.geojson --out map --payload features,smells", "smells"},
+      {"build --db map.db --zones zones.geojson --out map --payload features,", "payload"},
+      {"build --db map.db --zones zones.geojson --out map --orphans keep", "--orphans"},
+      {"build --db map.db --zones zones.geojson --out map --unlinked guess", "--unlinked"},
+      {"build --db map.db --zones zones.geojson --out map --damaged mend", "--damaged"},
+      {"build --db map.db --zones zones.geojson --out map --jobs 0", "--jobs"},
+      {"build --db map.db --zones zones.geojson --out map --snap far", "--snap"},
+      {"build --db map.db --zones zones.geojson --out map --snap -1", "--snap"},
+      {"build --db map.db --zones zones.geojson --out map --max-zone-bytes 3MB", "3MB"},
+      {"build --db map.db --zones zones.geojson --out map --colour red", "--colour"},
+      {"export map", "--jsonl"},
+      {"plan map --budget many", "many"},
+      {"plan", "DIR"},
+      {"pack", "subcommand"},
+      {"", "subcommand"}};
+  for (const auto& [arguments, word] : cases) {
+    const Outcome outcome = packer.zonepack(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.output;
+    EXPECT_THAT(outcome.output, HasSubstr(word)) << arguments;
+  }
+  EXPECT_FALSE(std::filesystem::exists(packer.path("map")));
+}
+
+TEST(BuildErrors, NameTheFileThatCannotBeRead) {
+  const Packer packer;
+  EXPECT_THAT(packer.build().output, HasSubstr("map.db"));
+  EXPECT_EQ(packer.build().exit_code, 1);
+  packer.write("map.db", "");
+  EXPECT_EQ(packer.build().exit_code, 1);
+  packer.write("map.db", std::string(4096, 'x'));
+  const Outcome noise = packer.build();
+  EXPECT_EQ(noise.exit_code, 1);
+  EXPECT_THAT(noise.output, HasSubstr("map.db: "));
+  packer.write_database(four_signatures());
+  packer.write("zones.geojson", "{");
+  const Outcome zones = packer.build();
+  EXPECT_EQ(zones.exit_code, 1);
+  EXPECT_THAT(zones.output, HasSubstr("zones.geojson"));
+  std::filesystem::remove(packer.path("zones.geojson"));
+  const Outcome missing = packer.build();
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.output, HasSubstr("zones.geojson"));
+}
+
+TEST(BuildErrors, RefuseADatabaseThatIsOpenElsewhere) {
+  const Packer packer;
+  packer.write_database(four_signatures());
+  packer.write("map.db-wal", std::string(64, 'w'));
+  const Outcome outcome = packer.build();
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("map.db"), HasSubstr("wal")));
+}
+
+TEST(Build, LeavesTheDatabaseAsItWas) {
+  const Packer packer;
+  packer.write_database(test_support::one_of_everything("0.23.8"));
+  const std::string before = bytes_of_file(packer.path("map.db"));
+  struct stat then {};
+  ASSERT_EQ(::stat(packer.path("map.db").c_str(), &then), 0);
+  packer.build_summary();
+  struct stat now {};
+  ASSERT_EQ(::stat(packer.path("map.db").c_str(), &now), 0);
+  EXPECT_EQ(now.st_mtim.tv_sec, then.st_mtim.tv_sec);
+  EXPECT_EQ(now.st_mtim.tv_nsec, then.st_mtim.tv_nsec);
+  EXPECT_EQ(now.st_ino, then.st_ino);
+  EXPECT_TRUE(bytes_of_file(packer.path("map.db")) == before);
+  for (const auto& entry : std::filesystem::directory_iterator(packer.path("."))) {
+    const std::string name = entry.path().filename();
+    EXPECT_TRUE(name == "map.db" || !name.starts_with("map.db")) << name;
+  }
+}
+
+TEST(BuildErrors, SayWhenTheFolderCannotBeMade) {
+  const Packer packer;
+  packer.write_database(four_signatures());
+  packer.write("map", "a file in the way");
+  const Outcome outcome = packer.build();
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("map: "), HasSubstr("--out")));
+  EXPECT_EQ(bytes_of_file(packer.path("map")), "a file in the way");
+}
+
+// A limit on the length of files stands for a full disk: writing fails in the middle of a pack.
+TEST(BuildErrors, LeaveTheOldMapWhenTheDiskIsFull) {
+  const Packer packer;
+  packer.write_database(four_signatures());
+  packer.build_summary();
+  const std::string before = packer.zonepack("export map --jsonl").output;
+  packer.write_database(test_support::one_of_everything("0.23.8"));
+  const Outcome outcome = run("cd " + packer.path("").string() +
+                              " && (trap '' XFSZ; ulimit -f 8; " ZONEPACK_PROGRAM
+                              " build --db map.db --zones zones.geojson --out map) 2>&1");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("map: cannot write a pack"), HasSubstr("room")));
+  EXPECT_EQ(packer.zonepack("export map --jsonl").output, before);
+  for (const auto& entry : std::filesystem::directory_iterator(packer.path("map"))) {
+    EXPECT_THAT(entry.path().filename(), ::testing::Not(HasSubstr(".part-")));
+  }
+}
+
+TEST(Build, PutsJsonAloneOnStandardOutput) {
+  const Packer packer;
+  packer.write_database(four_signatures());
+  const Outcome outcome =
+      run("cd " + packer.path("").string() +
+          " && " ZONEPACK_PROGRAM
+          " build --db map.db --zones zones.geojson --out map --json - 2>/dev/null");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(nlohmann::json::parse(outcome.output)["signatures"], 4);
+}
+
+TEST(MapErrors, NameWhatIsMissing) {
+  const Packer packer;
+  for (const char* command : {"export nowhere --jsonl", "plan nowhere"}) {
+    const Outcome outcome = packer.zonepack(command);
+    EXPECT_EQ(outcome.exit_code, 1) << command;
+    EXPECT_THAT(outcome.output, HasSubstr("nowhere/manifest.zpm: not found")) << command;
+  }
+  packer.write_database(four_signatures());
+  packer.build_summary();
+  const Outcome zone = packer.zonepack("export map --zone attic --jsonl");
+  EXPECT_EQ(zone.exit_code, 1);
+  EXPECT_THAT(zone.output, HasSubstr("no zone 'attic' in this map; it has east, west"));
+}
+
+TEST(Plan, ExitsWith1BelowTheSmallestBudget) {
+  const Packer packer;
+  packer.write_database(four_signatures());
+  const std::uint64_t smallest = packer.build_summary()["smallest_budget_bytes"];
+  EXPECT_EQ(packer.zonepack("plan map --budget " + std::to_string(smallest)).exit_code, 0);
+  const Outcome below = packer.zonepack("plan map --budget " + std::to_string(smallest - 1));
+  EXPECT_EQ(below.exit_code, 1);
+  EXPECT_THAT(below.output, HasSubstr("BELOW THE SMALLEST by 1 bytes"));
+}
+
+}  // namespace
+}  // namespace zonepack::system_test
