@@ -73,6 +73,15 @@ TEST(Cut, GivesTheTwoLegsOfAUAsTwoPieces) {
   EXPECT_DOUBLE_EQ(area_m2(pieces.below[0]), 10);
 }
 
+TEST(Cut, KeepsAHoleWithTheLegThatItIsIn) {
+  const Polygon u{{{0, 0}, {6, 0}, {6, 1}, {2, 1}, {2, 2}, {6, 2}, {6, 3}, {0, 3}},
+                  {{{5, 2.4}, {5, 2.6}, {5.2, 2.6}, {5.2, 2.4}}}};
+  const Pieces pieces = cut(u, kX, 4);
+  ASSERT_EQ(pieces.above.size(), 2u);
+  EXPECT_TRUE(pieces.above[0].holes.empty());
+  EXPECT_EQ(pieces.above[1].holes.size(), 1u);
+}
+
 TEST(Cut, OpensAHoleThatItPasses) {
   const Polygon ring = {{{0, 0}, {6, 0}, {6, 6}, {0, 6}}, {{{2, 2}, {2, 4}, {4, 4}, {4, 2}}}};
   const Pieces pieces = cut(ring, kX, 3);

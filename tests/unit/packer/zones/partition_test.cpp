@@ -130,10 +130,12 @@ TEST(Partition, TellsFloorsApartByHeight) {
 
 TEST(Partition, PrefersZonesOfTheRightHeightForOrphans) {
   PlannedZone ground = room("G", 0, 0, 4, 3), first = room("U", 0, 0, 4, 2);
+  PlannedZone west = room("W", 0, 0, 4, 2.4);  // 0.1 m away, on the ground floor
   ground.z_max_m = 3;
   first.z_min_m = 3;
+  west.z_max_m = 3;
   const Partition result =
-      partition(std::vector{ground, first}, std::vector<SignaturePlace>{{1, {1, 2.5}, 4}},
+      partition(std::vector{ground, first, west}, std::vector<SignaturePlace>{{1, {1, 2.5}, 4}},
                 OrphanPolicy::kNearest);
   EXPECT_THAT(result.zone_of, ElementsAre(1));
   EXPECT_DOUBLE_EQ(result.orphans.at(0).distance_m, 0.5);

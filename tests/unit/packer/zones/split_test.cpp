@@ -186,6 +186,16 @@ TEST(Split, KeepsOrphansWithTheirNearestPart) {
   EXPECT_THAT(result.zone_of, ElementsAre(0, 0, 1, 1));
 }
 
+TEST(Split, CutsWhereOrphansTouchTheZoneNotWhereTheyStand) {
+  Case input;
+  input.plan.zones = {zone_of("H", {{0, 0}, {8, 0}, {8, 2}, {0, 2}})};
+  for (const double x : {1.0, 3.0, 5.0, 7.0, 20.0, 21.0, 22.0, 23.0}) input.add({x, 1}, 10);
+  // Midway between 7 and 20 there is nothing to cut; the orphans all belong to the end at x = 8.
+  const SplitPlan result = input.split(40);
+  expect_sound(input, result, 40);
+  EXPECT_THAT(result.zone_of, ElementsAre(0, 0, 0, 0, 1, 1, 1, 1));
+}
+
 TEST(Split, LeavesDroppedSignaturesOut) {
   Case input;
   input.plan.zones = {zone_of("H", {{0, 0}, {8, 0}, {8, 2}, {0, 2}})};
