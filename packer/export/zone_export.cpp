@@ -10,8 +10,8 @@
 namespace zonepack::packer {
 namespace {
 
-// Runs of signatures whose chunks are about kWindowBytes long.
-std::vector<OrdinalRange> windows_of(const fb::PackIndex& index) {
+// Runs of signatures whose chunks are about `window_bytes` long.
+std::vector<OrdinalRange> windows_of(const fb::PackIndex& index, ByteCount window_bytes) {
   std::vector<std::uint64_t> bytes(index.signatures());
   for (const fb::ChunkEntry* entry : *index.chunks()) {
     bytes[entry->first_signature()] += entry->decoded_size();
@@ -19,7 +19,7 @@ std::vector<OrdinalRange> windows_of(const fb::PackIndex& index) {
   std::vector<OrdinalRange> windows;
   std::uint64_t sum = 0;
   for (std::uint32_t i = 0; i < index.signatures(); ++i) {
-    if (windows.empty() || sum + bytes[i] > kWindowBytes) {
+    if (windows.empty() || sum + bytes[i] > window_bytes) {
       windows.push_back({i, i});
       sum = 0;
     }
@@ -31,10 +31,11 @@ std::vector<OrdinalRange> windows_of(const fb::PackIndex& index) {
 
 }  // namespace
 
-void export_zone(const MapReader& map, const fb::Zone& zone, JsonLines& json) {
+void export_zone(const MapReader& map, const fb::Zone& zone, JsonLines& json,
+                 ByteCount window_bytes) {
   const std::string path = map.pack_path(zone);
   const PackReader pack = map.open_pack(zone);
-  for (const OrdinalRange window : windows_of(pack.index())) {
+  for (const OrdinalRange window : windows_of(pack.index(), window_bytes)) {
     const Result<DecodedPack> decoded = DecodedPack::decode(pack, kEveryPayload, window);
     if (!decoded) MapReader::fail(path, decoded.error());
     if (decoded->view().size() != window.last - window.first + 1) {

@@ -7,10 +7,9 @@
 namespace zonepack::packer {
 
 // Writes every signature of a zone as a line, in order of id. Memory: the pack's index, a window of
-// signatures (kWindowBytes decoded, or one signature if that is longer) and a piece of JSON.
-// Throws std::runtime_error naming the pack; whole lines may have been written by then.
-void export_zone(const MapReader& map, const fb::Zone& zone, JsonLines& json);
-
-inline constexpr std::uint64_t kWindowBytes = 8 * kMiB;
+// signatures (about `window_bytes` decoded, or one signature if that is longer) and a piece of
+// JSON. Throws std::runtime_error naming the pack; whole lines may have been written by then.
+void export_zone(const MapReader& map, const fb::Zone& zone, JsonLines& json,
+                 ByteCount window_bytes = 8 * kMiB);
 
 }  // namespace zonepack::packer
