@@ -4,6 +4,7 @@
 #include <lz4.h>
 
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 
 #include "platform/base/require.hpp"
@@ -78,9 +79,13 @@ flatbuffers::Offset<fb::Zone> zone_table(Builder& builder, const PlannedZone& zo
   const auto payload_vector = builder.CreateVectorOfStructs(payloads);
   const auto slots = builder.CreateVector(pack.slots);
   const auto node_vector = builder.CreateVectorOfStructs(nodes);
+  const auto layer = text(builder, zone.layer);
+  const auto floor = text(builder, zone.floor);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   return fb::CreateZone(builder, name, zone_type, label, parent, outer, hole_vector,
                         pack.signatures, pack.features, file, pack.bytes, pack_digest,
-                        pack.grid_needs_scan, payload_vector, slots, node_vector);
+                        pack.grid_needs_scan, payload_vector, slots, node_vector, layer, floor,
+                        zone.z_min_m.value_or(-kInfinity), zone.z_max_m.value_or(kInfinity));
 }
 
 }  // namespace

@@ -94,6 +94,7 @@ void BulkChunkBuilder::append(const SourceTable& table, std::uint32_t first, std
     }
     columns_.emplace_back(column.base, place, static_cast<std::uint32_t>(column.bytes.size()),
                           column.param, column.field, column.codec, column.bits);
+    if (column.codec == fb::ColumnCodec::Subset) needs_scan_ = true;
   }
   first_signature_ = std::min(first_signature_, table.signature);
   last_signature_ = std::max(last_signature_, table.signature);

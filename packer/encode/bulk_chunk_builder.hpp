@@ -28,6 +28,8 @@ class BulkChunkBuilder {
   std::uint64_t size_bound() const noexcept { return size_with(0, 0, 0); }
   std::uint32_t first_signature() const noexcept { return first_signature_; }
   std::uint32_t last_signature() const noexcept { return last_signature_; }
+  // Whether some rows are told as points of the scan.
+  bool needs_scan() const noexcept { return needs_scan_; }
 
   // The chunk as a FlatBuffer; the builder is empty afterwards.
   Bytes finish();
@@ -45,6 +47,7 @@ class BulkChunkBuilder {
   std::unordered_map<std::string, std::uint32_t> places_;  // of short columns, which are shared
   std::uint32_t first_signature_ = 0xFFFFFFFFu;
   std::uint32_t last_signature_ = 0;
+  bool needs_scan_ = false;
 };
 
 }  // namespace zonepack::packer

@@ -51,7 +51,6 @@ void PackWriter::add(SignatureRecord& record, float x, float y) {
   positions_.emplace_back(x, y);
   summary_.signature_bytes.push_back(0);
   for (SourceTable& table : tables_of(record, ordinal)) {
-    if (table.scan_indices) summary_.grid_needs_scan = true;
     const fb::PayloadKind kind = kind_of(table.part);
     Queue& queue = queues_[static_cast<std::size_t>(kind)];
     queue.tables.push_back({std::move(table), 0});
@@ -82,6 +81,7 @@ void PackWriter::emit_bulk(fb::PayloadKind kind, Queue& queue) {
   }
   const std::uint32_t first = queue.chunk.first_signature();
   const std::uint32_t last = queue.chunk.last_signature();
+  if (queue.chunk.needs_scan()) summary_.grid_needs_scan = true;
   emit(kind, queue.chunk.finish(), first, last);
   queue.tables.erase(queue.tables.begin(),
                      queue.tables.begin() + static_cast<std::ptrdiff_t>(queue.whole));

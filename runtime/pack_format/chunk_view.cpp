@@ -14,6 +14,24 @@ bool is_attribute(fb::Field field) noexcept {
   return field == fb::Field::Shape || field == fb::Field::Info;
 }
 
+// Which codecs a field may have, so that readers need not ask before they use an accessor.
+bool codec_fits(const fb::Column& column) noexcept {
+  const fb::ColumnCodec codec = column.codec();
+  switch (column.field()) {
+    case fb::Field::Shape:
+      return codec == fb::ColumnCodec::Constant;
+    case fb::Field::Info:
+      return codec == fb::ColumnCodec::Constant || codec == fb::ColumnCodec::Raw;
+    case fb::Field::Descriptor:
+      return codec == fb::ColumnCodec::Raw;
+    case fb::Field::Row:
+      return codec == fb::ColumnCodec::Raw || codec == fb::ColumnCodec::Lattice ||
+             codec == fb::ColumnCodec::Subset;
+    default:
+      return codec == fb::ColumnCodec::Raw ? column.param() == 4 : codec <= fb::ColumnCodec::Blocks;
+  }
+}
+
 bool record_is_sound(const fb::BulkChunk& chunk, const fb::Record& record, ByteSpan bytes,
                      const fb::ChunkEntry& entry) noexcept {
   const std::uint32_t columns = chunk.columns()->size();
@@ -26,7 +44,7 @@ bool record_is_sound(const fb::BulkChunk& chunk, const fb::Record& record, ByteS
   }
   for (std::uint32_t i = 0; i < record.columns(); ++i) {
     const fb::Column& column = *chunk.columns()->Get(record.first_column() + i);
-    if (column.field() > fb::Field::MAX ||
+    if (column.field() > fb::Field::MAX || !codec_fits(column) ||
         !column_is_sound(column, bytes, is_attribute(column.field()) ? 1 : record.rows())) {
       return false;
     }

@@ -26,6 +26,13 @@ bool blocks_are_sound(ByteSpan bytes, std::uint32_t rows) noexcept {
   return headers + words * 4 == bytes.size();
 }
 
+// Values are integers below 2^24 in size, which float32 holds exactly.
+bool scale_is_sound(const fb::Column& column) noexcept {
+  constexpr std::int64_t kFar = std::int64_t{1} << 24;
+  const auto base = static_cast<std::int64_t>(column.base());
+  return column.bits() <= 25 && column.param() <= 15 && base > -kFar && base < kFar;
+}
+
 bool lattice_is_sound(ByteSpan bytes, std::uint32_t rows) noexcept {
   LatticeHeader header;
   if (bytes.size() < sizeof header) return false;
@@ -35,6 +42,22 @@ bool lattice_is_sound(ByteSpan bytes, std::uint32_t rows) noexcept {
   return header.width < kFar && header.height < kFar && header.first_x > -kFar &&
          header.first_x < kFar && header.first_y > -kFar && header.first_y < kFar &&
          cells >= rows && bytes.size() - sizeof header == (cells + 7) / 8;
+}
+
+// What a codec does not use is zero, and so are bits behind the last row.
+bool unused_is_zero(const ColumnView& column) noexcept {
+  const auto codec = column.codec();
+  const bool packed = codec == fb::ColumnCodec::Packed || codec == fb::ColumnCodec::Scaled;
+  const bool has_param = codec == fb::ColumnCodec::Raw || codec == fb::ColumnCodec::Scaled;
+  const bool has_base = codec != fb::ColumnCodec::Raw && codec != fb::ColumnCodec::Blocks &&
+                        codec != fb::ColumnCodec::Lattice;
+  if ((!packed && column.bits() != 0) || (!has_param && column.param() != 0) ||
+      (!has_base && column.base() != 0) ||
+      (codec == fb::ColumnCodec::Packed && column.base() >> 32 != 0)) {
+    return false;
+  }
+  const std::uint64_t used = std::uint64_t{column.rows()} * column.bits() % 8;
+  return !packed || used == 0 || std::to_integer<unsigned>(column.bytes().back()) >> used == 0;
 }
 
 std::uint64_t ones(ByteSpan bits) noexcept {
@@ -93,8 +116,7 @@ bool column_is_sound(const fb::Column& column, ByteSpan bytes, std::uint32_t row
     case fb::ColumnCodec::Packed:
       return column.bits() <= 32 && packed_bytes(rows, column.bits()) == column.size();
     case fb::ColumnCodec::Scaled:
-      return column.bits() <= 32 && column.param() <= 15 &&
-             packed_bytes(rows, column.bits()) == column.size();
+      return scale_is_sound(column) && packed_bytes(rows, column.bits()) == column.size();
     case fb::ColumnCodec::Blocks:
       return blocks_are_sound(own, rows);
     case fb::ColumnCodec::Lattice:
@@ -108,6 +130,7 @@ bool column_is_sound(const fb::Column& column, ByteSpan bytes, std::uint32_t row
 }
 
 bool column_is_exact(const ColumnView& column) noexcept {
+  if (!unused_is_zero(column)) return false;
   switch (column.codec()) {
     case fb::ColumnCodec::Lattice:
       return ones(column.bytes().subspan(sizeof(LatticeHeader))) == column.rows();

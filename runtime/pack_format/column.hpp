@@ -72,6 +72,7 @@ class ColumnView {
   fb::ColumnCodec codec() const noexcept { return column_->codec(); }
   std::uint64_t base() const noexcept { return column_->base(); }
   std::uint32_t param() const noexcept { return column_->param(); }
+  unsigned bits() const noexcept { return column_->bits(); }
   std::uint32_t rows() const noexcept { return rows_; }
   ByteSpan bytes() const noexcept { return {data_, column_->size()}; }
 
@@ -133,7 +134,8 @@ void for_each_scan_index(const ColumnView& column, Fn&& fn) {
 // above reads outside column bytes plus kColumnPadding. `bytes` are the chunk's.
 bool column_is_sound(const fb::Column& column, ByteSpan bytes, std::uint32_t rows) noexcept;
 
-// Whether bit strings hold exactly the declared rows. Costs a pass over the column; for verify.
+// Whether bit strings hold exactly the declared rows, and what the codec does not use is zero.
+// Costs a pass over the column; for verify.
 bool column_is_exact(const ColumnView& column) noexcept;
 
 }  // namespace zonepack

@@ -50,6 +50,7 @@ bool zone_is_sound(const fb::Manifest& manifest, const fb::Zone& zone) noexcept 
   for (const std::uint32_t slots : *zone.slots()) {
     if (slots > kMaxChunksPerPack) return false;
   }
+  if (!(zone.z_min() < zone.z_max())) return false;
   return zone.nodes() == nullptr || zone.nodes()->size() == zone.signatures();
 }
 
@@ -99,6 +100,16 @@ Result<const fb::Manifest*> check_manifest(ByteSpan file) noexcept {
         return ErrorCode::kBadValue;
       }
     }
+  }
+  if (manifest.edges() != nullptr) {
+    for (const fb::ZoneEdge* edge : *manifest.edges()) {
+      if (edge->zone_a() >= edge->zone_b() || edge->zone_b() >= manifest.zones()->size()) {
+        return ErrorCode::kBadValue;
+      }
+    }
+  }
+  if (manifest.signature() != nullptr && manifest.signature()->size() != kSignatureBytes) {
+    return ErrorCode::kBadValue;
   }
   return &manifest;
 }

@@ -18,6 +18,7 @@ namespace zonepack {
 inline constexpr std::string_view kManifestName = "manifest.zpm";
 inline constexpr std::uint16_t kManifestMajor = 1;
 inline constexpr std::uint16_t kManifestMinor = 0;
+inline constexpr std::uint32_t kSignatureBytes = 64;  // Ed25519
 
 inline constexpr Magic kManifestMagic = {0x89, 'Z', 'P', 'M', '\r', '\n', 0x1A, '\n'};
 inline constexpr Magic kManifestEndMagic = {'\n', 0x1A, '\n', '\r', 'M', 'P', 'Z', 0x89};
@@ -37,8 +38,8 @@ struct ManifestTail {
 static_assert(sizeof(ManifestTail) == 40);
 
 // Checks a whole manifest file and everything that its readers rely on: digest, structure, names
-// (present, unique, sorted, within limits), polygons, portals between known zones, slot tables,
-// file names without a path. `file` must be aligned to 8. The result points into `file`.
+// (present, unique, sorted, within limits), polygons, portals and edges between known zones, slot
+// tables, file names without a path. `file` must be aligned to 8. The result points into `file`.
 Result<const fb::Manifest*> check_manifest(ByteSpan file) noexcept;
 
 // The digest at the end of a checked manifest file: names the version of the map.
