@@ -7,9 +7,12 @@
 #include "packer/commands/build.hpp"
 #include "packer/commands/check_zones.hpp"
 #include "packer/commands/export.hpp"
+#include "packer/commands/inspect.hpp"
 #include "packer/commands/outline.hpp"
 #include "packer/commands/plan.hpp"
+#include "packer/commands/prune.hpp"
 #include "packer/commands/report.hpp"
+#include "packer/commands/verify.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app(
@@ -24,6 +27,9 @@ int main(int argc, char** argv) {
   zonepack::packer::add_export_command(app, exit_code);
   zonepack::packer::add_outline_command(app, exit_code);
   zonepack::packer::add_plan_command(app, exit_code);
+  zonepack::packer::add_inspect_command(app, exit_code);
+  zonepack::packer::add_verify_command(app, exit_code);
+  zonepack::packer::add_prune_command(app, exit_code);
   zonepack::packer::add_report_command(app, exit_code);
   try {
     app.parse(argc, argv);

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/build/leftovers.hpp"
+
+#include <signal.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+
+#include "platform/atomic_file.hpp"
+#include "platform/storage.hpp"
+#include "runtime/pack_format/manifest_file.hpp"
+
+namespace zonepack::packer {
+namespace {
+
+std::set<std::string> named_packs(const std::filesystem::path& folder) {
+  const std::string path = (folder / kManifestName).string();
+  const Result<std::vector<std::byte>> file =
+      read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail));
+  const Result<const fb::Manifest*> manifest =
+      file ? check_manifest(*file) : Result<const fb::Manifest*>(file.error());
+  if (!manifest) {
+    throw std::runtime_error(path + ": " + to_string(manifest.error().code) +
+                             "; without a whole manifest every pack would be removed, so none is: "
+                             "build the map again or copy its manifest here");
+  }
+  std::set<std::string> names;
+  for (const fb::Zone* zone : *(*manifest)->zones()) names.insert(zone->pack()->str());
+  return names;
+}
+
+bool is_pack_name(std::string_view name) {
+  constexpr std::string_view kEnd = ".zpk";
+  constexpr std::size_t kDigits = 16;
+  if (!name.ends_with(kEnd)) return false;
+  name.remove_suffix(kEnd.size());
+  if (name.size() < kDigits + 2 || name[name.size() - kDigits - 1] != '-') return false;
+  return std::ranges::all_of(name.substr(name.size() - kDigits), [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
+  });
+}
+
+constexpr std::string_view kPartMark = ".part-";
+
+bool is_part_of_map(std::string_view name) {
+  if (!is_part_name(name)) return false;
+  const std::string_view whole = name.substr(0, name.rfind(kPartMark));
+  return whole == kManifestName || whole.ends_with(".zpk");
+}
+
+void refuse_running(const std::filesystem::path& folder, std::string_view name) {
+  const std::string_view digits = name.substr(name.rfind(kPartMark) + kPartMark.size());
+  int process = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), process);
+  if (process <= 0 || (::kill(process, 0) != 0 && errno == ESRCH)) return;
+  throw std::runtime_error((folder / name).string() + " is being written by process " +
+                           std::to_string(process) +
+                           ", which still runs; wait for the build to end, or stop it");
+}
+
+}  // namespace
+
+std::vector<Leftover> find_leftovers(const std::filesystem::path& folder) {
+  const std::set<std::string> named = named_packs(folder);
+  std::vector<Leftover> leftovers;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.is_symlink() || !entry.is_regular_file() || named.contains(name)) continue;
+    const bool part = is_part_of_map(name);
+    if (!part && !is_pack_name(name)) continue;
+    if (part) refuse_running(folder, name);
+    leftovers.push_back({name, entry.file_size()});
+  }
+  std::ranges::sort(leftovers, {}, &Leftover::name);
+  return leftovers;
+}
+
+void remove_leftover(const std::filesystem::path& folder, const Leftover& leftover) {
+  const std::filesystem::path path = folder / leftover.name;
+  std::error_code error;
+  std::filesystem::remove(path, error);
+  if (error) throw std::runtime_error(path.string() + ": cannot be removed: " + error.message());
+}
+
+}  // namespace zonepack::packer

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/commands/verify.hpp"
+
+#include <filesystem>
+#include <memory>
+
+#include "packer/commands/command_line.hpp"
+#include "packer/verify/map_verifier.hpp"
+#include "runtime/pack_format/manifest_file.hpp"
+
+namespace zonepack::packer {
+namespace {
+
+struct Arguments {
+  std::string path;
+  JsonOutput json;
+};
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+Verdict verify(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return verify_map(FolderSource(path));
+  const std::string name = path.filename().string();
+  const FolderSource folder(folder_of(path));
+  return name == kManifestName ? verify_map(folder) : verify_one_pack(folder, name);
+}
+
+nlohmann::ordered_json to_json(const Verdict& verdict, const std::string& path) {
+  nlohmann::ordered_json json;
+  json["path"] = path;
+  json["whole"] = verdict.whole();
+  json["packs"] = verdict.packs;
+  json["signatures"] = verdict.signatures;
+  json["bytes"] = verdict.bytes;
+  json["problems"] = nlohmann::ordered_json::array();
+  for (const Problem& problem : verdict.problems) json["problems"].push_back(to_json(problem));
+  json["unnamed_files"] = verdict.unnamed;
+  return json;
+}
+
+void print(const Verdict& verdict, const std::string& path, std::ostream& out) {
+  for (const Problem& problem : verdict.problems) out << to_string(problem) << "\n";
+  if (!verdict.unnamed.empty()) {
+    out << path << ": " << verdict.unnamed.size()
+        << " packs or parts that the manifest does not name; 'zonepack prune' removes them\n";
+  }
+  out << path << ": ";
+  if (verdict.whole()) {
+    out << "whole";
+  } else {
+    out << "DAMAGED: " << verdict.problems.size()
+        << (verdict.problems.size() == 1 ? " problem" : " problems");
+  }
+  out << "; " << verdict.packs << (verdict.packs == 1 ? " pack, " : " packs, ")
+      << verdict.signatures << " signatures, " << verdict.bytes << " bytes checked\n";
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const command = app.add_subcommand(
+      "verify",
+      "Check every byte of a map or a pack: 0 whole, 1 damaged, with each place and what to do");
+  command->add_option("PATH", arguments->path, "folder of a map, or a pack (*.zpk)")
+      ->required()
+      ->type_name("DIR|PACK");
+  arguments->json.add_option(*command);
+  command->callback([arguments, &exit_code] {
+    const Verdict verdict = verify(arguments->path);
+    print(verdict, arguments->path, arguments->json.text());
+    arguments->json.write(to_json(verdict, arguments->path));
+    exit_code = verdict.whole() ? 0 : 1;
+  });
+}
+
+}  // namespace zonepack::packer

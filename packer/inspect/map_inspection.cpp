@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/inspect/map_inspection.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "packer/commands/command_line.hpp"
+#include "packer/commands/text_table.hpp"
+#include "packer/verify/problem.hpp"
+#include "platform/storage.hpp"
+#include "runtime/pack_format/accounting.hpp"
+
+namespace zonepack::packer {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json text_or_null(const flatbuffers::String* text) {
+  return text == nullptr ? Json() : Json(text->str());
+}
+
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+std::string hex_of(const flatbuffers::Vector<std::uint8_t>& bytes) {
+  return to_hex(std::span(bytes.data(), bytes.size()));
+}
+
+struct ZoneBytes {
+  ByteCount charged = 0, stored = 0, decoded = 0;  // for the default payload
+};
+
+ZoneBytes bytes_of(const fb::Manifest& manifest, const fb::Zone& zone) {
+  ZoneBytes bytes;
+  bytes.charged = zone_slots(manifest, zone, kDefaultPayload) * kSlotBytes;
+  const PayloadMask mask = payload_closure(kDefaultPayload, zone.grid_needs_scan());
+  for (const fb::PayloadBytes* payload : *zone.payloads()) {
+    if ((mask & mask_of(static_cast<fb::PayloadKind>(payload->kind()))) == 0) continue;
+    bytes.stored += payload->stored();
+    bytes.decoded += payload->decoded();
+  }
+  return bytes;
+}
+
+Json zone_json(const fb::Manifest& manifest, const fb::Zone& zone) {
+  const ZoneBytes bytes = bytes_of(manifest, zone);
+  Json json;
+  json["name"] = zone.name()->str();
+  json["zone_type"] = text_or_null(zone.zone_type());
+  json["label"] = text_or_null(zone.label());
+  json["parent"] = text_or_null(zone.parent());
+  json["layer"] = text_or_null(zone.layer());
+  json["floor"] = text_or_null(zone.floor());
+  json["z_min"] = finite_or_null(zone.z_min());
+  json["z_max"] = finite_or_null(zone.z_max());
+  json["area_m2"] = area_m2(polygon_of(zone));
+  json["signatures"] = zone.signatures();
+  json["features"] = zone.features();
+  json["slots"] = zone_slots(manifest, zone, kDefaultPayload);
+  json["charged_bytes"] = bytes.charged;
+  json["decoded_bytes"] = bytes.decoded;
+  json["stored_bytes"] = bytes.stored;
+  json["pack"] = zone.pack()->str();
+  json["pack_bytes"] = zone.pack_bytes();
+  json["pack_digest"] = hex_of(*zone.pack_digest());
+  json["grid_needs_scan"] = zone.grid_needs_scan();
+  json["payloads"] = Json::object();
+  for (const fb::PayloadBytes* payload : *zone.payloads()) {
+    const char* const kind = zonepack::to_string(static_cast<fb::PayloadKind>(payload->kind()));
+    json["payloads"][kind == nullptr ? std::to_string(payload->kind()) : kind] = {
+        {"chunks", payload->chunks()},
+        {"decoded_bytes", payload->decoded()},
+        {"stored_bytes", payload->stored()}};
+  }
+  return json;
+}
+
+Json portals_json(const fb::Manifest& manifest) {
+  Json json = Json::array();
+  if (manifest.portals() == nullptr) return json;
+  const auto name_of = [&](std::uint32_t zone) {
+    return manifest.zones()->Get(zone)->name()->str();
+  };
+  for (const fb::Portal* portal : *manifest.portals()) {
+    json.push_back({{"name", text_or_null(portal->name())},
+                    {"zones", {name_of(portal->zone_a()), name_of(portal->zone_b())}},
+                    {"p", {portal->p()->x(), portal->p()->y()}},
+                    {"q", {portal->q()->x(), portal->q()->y()}}});
+  }
+  return json;
+}
+
+Json provenance_json(const fb::Provenance& provenance) {
+  return {{"source_kind", text_or_null(provenance.source_kind())},
+          {"source_version", text_or_null(provenance.source_version())},
+          {"packer_version", text_or_null(provenance.packer_version())},
+          {"lz4_version", provenance.lz4_version()},
+          {"options", text_or_null(provenance.options())},
+          {"source_feature_count", provenance.source_feature_count()},
+          {"source_bytes", provenance.source_bytes()},
+          {"detector", text_or_null(provenance.detector())}};
+}
+
+void print(const fb::Manifest& manifest, const std::string& folder, const std::string& version,
+           std::ostream& out) {
+  const std::uint32_t portals = manifest.portals() == nullptr ? 0 : manifest.portals()->size();
+  out << folder << ": map " << hex_of(*manifest.lineage()) << ", version " << version << "\n"
+      << manifest.zones()->size() << " zones, " << portals << " portals, payload "
+      << payload_text(manifest.payload_mask()) << ", slots of " << manifest.slot_bytes()
+      << " bytes\n\n";
+  TextTable table({"zone", "type", "signatures", "features", "slots", "charged", "stored", "pack"});
+  std::uint64_t signatures = 0, features = 0, slots = 0;
+  ZoneBytes total;
+  for (const fb::Zone* zone : *manifest.zones()) {
+    const ZoneBytes bytes = bytes_of(manifest, *zone);
+    const std::uint32_t zone_slots = zonepack::zone_slots(manifest, *zone, kDefaultPayload);
+    table.add({zone->name()->str(), zone->zone_type() == nullptr ? "" : zone->zone_type()->str(),
+               std::to_string(zone->signatures()), std::to_string(zone->features()),
+               std::to_string(zone_slots), std::to_string(bytes.charged),
+               std::to_string(bytes.stored), zone->pack()->str()});
+    signatures += zone->signatures();
+    features += zone->features();
+    slots += zone_slots;
+    total.charged += bytes.charged;
+    total.stored += bytes.stored;
+  }
+  table.add({"all", "", std::to_string(signatures), std::to_string(features), std::to_string(slots),
+             std::to_string(total.charged), std::to_string(total.stored), ""});
+  table.print(out);
+  out << "\nslots, charged and stored: for " << payload_text(kDefaultPayload)
+      << "; the 16 digits in a pack's name begin its digest\n";
+}
+
+}  // namespace
+
+nlohmann::ordered_json inspect_map(const std::string& folder, std::ostream& out) {
+  const std::string path = folder + "/" + std::string(kManifestName);
+  const Result<std::vector<std::byte>> file =
+      read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail));
+  const Result<const fb::Manifest*> checked =
+      file ? check_manifest(*file) : Result<const fb::Manifest*>(file.error());
+  if (!checked) {
+    const bool missing = checked.error().code == ErrorCode::kNotFound;
+    throw std::runtime_error(path + ": " + to_text(checked.error()) +
+                             (missing ? "; is this a map that 'zonepack build' wrote?"
+                                      : "; 'zonepack verify' tells where the map is damaged"));
+  }
+  const fb::Manifest& manifest = **checked;
+  const std::string version = to_hex(manifest_digest(*file));
+  Json json;
+  json["map"] = folder;
+  json["lineage"] = hex_of(*manifest.lineage());
+  json["version"] = version;
+  json["frame"] = manifest.frame()->str();
+  json["slot_bytes"] = manifest.slot_bytes();
+  json["payload"] = payload_text(manifest.payload_mask());
+  json["manifest_bytes"] = file->size();
+  json["signed"] = manifest.signature() != nullptr;
+  json["zones"] = Json::array();
+  for (const fb::Zone* zone : *manifest.zones())
+    json["zones"].push_back(zone_json(manifest, *zone));
+  json["portals"] = portals_json(manifest);
+  json["provenance"] = provenance_json(*manifest.provenance());
+  print(manifest, folder, version, out);
+  return json;
+}
+
+}  // namespace zonepack::packer

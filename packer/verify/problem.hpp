@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform/base/result.hpp"
+
+// What is wrong with a map: where, what was expected, and what to do about it.
+namespace zonepack::packer {
+
+struct Location {
+  std::string file = {};                     // name in the map's folder
+  std::string zone = {};                     // empty while it is not known
+  std::optional<std::uint32_t> chunk = {};   // place in the pack's index
+  std::string kind = {};                     // payload kind of the chunk
+  std::optional<std::uint64_t> offset = {};  // bytes from the start of the file
+};
+
+struct Problem {
+  Location place;
+  std::string text;    // what was found and what was expected
+  std::string remedy;  // what to do
+};
+
+using Problems = std::vector<Problem>;
+
+// For bytes that are not those which were written.
+inline constexpr const char* kCopyAgain =
+    "copy this file again from where the map was built, or build the map again";
+// For a whole file that belongs elsewhere.
+inline constexpr const char* kWrongFile =
+    "the pack is of another map or version: copy the folder again from where this manifest was "
+    "written";
+// For whole files that contradict themselves: no accident of storage does that.
+inline constexpr const char* kBuildAgain =
+    "the checksums hold, so it was written like this: build the map again with this version";
+
+// "L1-0123.zpk: zone L1, chunk 3 (features) at byte 4711: …; copy this file again …".
+std::string to_string(const Problem& problem);
+
+nlohmann::ordered_json to_json(const Problem& problem);
+
+// "i/o error (Input/output error)", "truncated".
+std::string to_text(const Error& error);
+
+}  // namespace zonepack::packer

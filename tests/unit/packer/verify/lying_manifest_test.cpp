@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// Manifests with a right digest that say what the packs do not hold.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+#include <sstream>
+
+#include "packer/verify/map_verifier.hpp"
+#include "tests/support/small_map.hpp"
+
+namespace zonepack::packer {
+namespace {
+
+using test_support::SmallMap;
+
+std::string list(const Problems& problems) {
+  std::string text;
+  for (const Problem& problem : problems) text += to_string(problem) + "\n";
+  return text;
+}
+
+struct Lie {
+  const char* name;
+  std::function<void(SmallMap&)> tell;
+  const char* found;  // part of the message
+};
+
+void PrintTo(const Lie& lie, std::ostream* out) { *out << lie.name; }
+
+class LyingManifest : public testing::TestWithParam<Lie> {};
+
+TEST_P(LyingManifest, IsFound) {
+  SmallMap map;
+  GetParam().tell(map);
+  map.write_manifest();
+  const Verdict verdict = verify_map(map.folder);
+  EXPECT_THAT(list(verdict.problems), testing::HasSubstr(GetParam().found));
+}
+
+void move_node(SmallMap& map, float dx, float dy, float dz, float dyaw) {
+  fb::Node& n = map.content.nodes[0][0];
+  n = fb::Node(n.x() + dx, n.y() + dy, n.z() + dz, n.yaw() + dyaw, n.id());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfAZone, LyingManifest,
+    testing::Values(
+        Lie{"Features",
+            [](SmallMap& m) {
+              ++m.packs[0].features, m.content.source_feature_count += 9,
+                  m.content.source_bytes += 9 * 72;
+            },
+            "zone a: the manifest says features 4, the pack has 3"},
+        Lie{"Signatures",
+            [](SmallMap& m) {
+              ++m.packs[0].signatures;
+              m.content.nodes[0].emplace_back(1.0F, 1.0F, 0.0F, 0.0F, 9);
+            },
+            "says signatures 2, the pack has 1"},
+        Lie{"PackBytes", [](SmallMap& m) { --m.packs[0].bytes; }, "says pack_bytes"},
+        Lie{"PackDigest", [](SmallMap& m) { m.packs[0].digest[31] ^= 1; }, "says digest"},
+        Lie{"PackOfAnotherZone",
+            [](SmallMap& m) {
+              std::swap(m.packs[0].file, m.packs[1].file);
+              std::swap(m.packs[0].digest, m.packs[1].digest);
+            },
+            "names a pack of zone 'a', the pack is of zone 'b'"},
+        Lie{"PackThatIsNotThere", [](SmallMap& m) { m.packs[0].file[3] ^= 1; },
+            "the file is not there"},
+        Lie{"PackNotCalledByItsContent",
+            [](SmallMap& m) {
+              m.folder.files["a-0000000000000000.zpk"] = m.folder.files[m.packs[0].file];
+              m.packs[0].file = "a-0000000000000000.zpk";
+            },
+            "by its content it is"},
+        Lie{"GridNeedsScan",
+            [](SmallMap& m) { m.packs[0].grid_needs_scan = !m.packs[0].grid_needs_scan; },
+            "says grid_needs_scan"},
+        Lie{"DecodedBytes", [](SmallMap& m) { ++m.packs[0].payloads[1].decoded; },
+            "says decoded bytes of features"},
+        Lie{"StoredBytes", [](SmallMap& m) { ++m.packs[0].payloads[2].stored; },
+            "says stored bytes of scan"},
+        Lie{"Chunks", [](SmallMap& m) { ++m.packs[0].payloads[3].chunks; }, "says chunks of grid"},
+        Lie{"PayloadLeftOut", [](SmallMap& m) { m.packs[0].payloads[4] = {}; },
+            "does not list payload image"},
+        Lie{"SlotsOfOneSet", [](SmallMap& m) { ++m.packs[0].slots[63]; },
+            "says slots of payload set 127"},
+        Lie{"SlotsOfTheCore", [](SmallMap& m) { --m.packs[0].slots[0]; },
+            "says slots of payload set 1 0, the pack has 1"},
+        Lie{"Parent", [](SmallMap& m) { m.plan.zones[0].parent = "hall"; },
+            "parts are called 'hall.1'"},
+        Lie{"NodeId",
+            [](SmallMap& m) {
+              const fb::Node& n = m.content.nodes[0][0];
+              m.content.nodes[0][0] = fb::Node(n.x(), n.y(), n.z(), n.yaw(), 3);
+            },
+            "says node number 0 is 3, the pack has 1"},
+        Lie{"NodeX", [](SmallMap& m) { move_node(m, 0.001F, 0, 0, 0); }, "places node 1 elsewhere"},
+        Lie{"NodeY", [](SmallMap& m) { move_node(m, 0, 0.001F, 0, 0); }, "places node 1 elsewhere"},
+        Lie{"NodeZ", [](SmallMap& m) { move_node(m, 0, 0, 0.001F, 0); }, "places node 1 elsewhere"},
+        Lie{"NodeYaw", [](SmallMap& m) { move_node(m, 0, 0, 0, 0.001F); },
+            "places node 1 elsewhere"}),
+    [](const auto& test) { return test.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    OfTheMap, LyingManifest,
+    testing::Values(
+        Lie{"PolygonMovedAway",
+            [](SmallMap& m) {
+              // Room a shrinks to x 0 to 1, room b grows over signature 1 at x = 2.
+              m.plan.zones[0].polygon.outer = {{0, 0}, {1, 0}, {1, 4}, {0, 4}};
+              m.plan.zones[1].polygon.outer = {{1, 0}, {8, 0}, {8, 4}, {1, 4}};
+              m.plan.portals[0].segment = {{1, 1.5}, {1, 2.5}};
+            },
+            "signature 1 is in the pack of zone a, by the polygons it belongs to zone b"},
+        Lie{"HoleAroundTheSignature",
+            [](SmallMap& m) {
+              m.plan.zones[0].polygon.outer = {{0, 0}, {8, 0}, {8, 4}, {0, 4}};
+              m.plan.zones[0].polygon.holes = {{{5, 1}, {5, 3}, {5.5, 3}, {5.5, 1}}};
+              m.plan.zones[1].polygon.outer = {{4, 0}, {5, 0}, {5, 4}, {4, 4}};
+            },
+            "signature 2 is in the pack of zone b"},
+        Lie{"Heights",
+            [](SmallMap& m) {
+              m.plan.zones[0].z_min_m = 10;
+              m.plan.zones[1].polygon.outer = {{0, 0}, {8, 0}, {8, 4}, {0, 4}};
+              m.plan.portals.clear();
+            },
+            "signature 1 is in the pack of zone a"},
+        Lie{"PortalOffTheBorder",
+            [](SmallMap& m) {
+              m.plan.portals[0].segment.p = {3, 1.5};
+            },
+            "portal 'a-b' ends 1.0"},
+        Lie{"EdgeCount", [](SmallMap& m) { m.content.edges[0] = fb::ZoneEdge(0, 1, 3); },
+            "says 3 links between zones a and b, the packs hold 2"},
+        Lie{"EdgeLeftOut", [](SmallMap& m) { m.content.edges.clear(); },
+            "leaves out 2 links between zones a and b"},
+        Lie{"EdgeTwice", [](SmallMap& m) { m.content.edges.push_back(m.content.edges[0]); },
+            "the packs hold 0"},
+        Lie{"PayloadMask",
+            [](SmallMap& m) {
+              m.content.payload = kDefaultPayload;
+              for (PackSummary& pack : m.packs) pack.slots.resize(8);
+            },
+            "has payload image, which the map's mask leaves out"},
+        Lie{"FeaturesOfTheSource", [](SmallMap& m) { m.content.source_feature_count = 5; },
+            "says the source had 5 features, the packs hold 6"},
+        Lie{"BytesOfTheSource", [](SmallMap& m) { m.content.source_bytes = 6 * 72 - 1; },
+            "fewer than its features alone take"}),
+    [](const auto& test) { return test.param.name; });
+
+// What the manifest says and a pack or another part of the manifest can contradict. Left out: what
+// stands in the manifest only (lineage, labels, types, which portals there are, texts of the
+// provenance) and coordinates, which are held against signatures and borders with some play.
+std::string claims(const fb::Manifest& manifest) {
+  std::ostringstream out;
+  out << manifest.frame()->str() << manifest.slot_bytes() << ' ' << manifest.payload_mask();
+  for (const fb::Zone* zone : *manifest.zones()) {
+    out << "\n"
+        << zone->name()->str() << ' ' << zone->signatures() << ' ' << zone->features() << ' '
+        << zone->pack()->str() << ' ' << zone->pack_bytes() << ' '
+        << to_hex(std::span(zone->pack_digest()->data(), zone->pack_digest()->size())) << ' '
+        << zone->grid_needs_scan() << ' ' << (zone->parent() == nullptr);
+    for (const fb::PayloadBytes* p : *zone->payloads()) {
+      out << ' ' << int{p->kind()} << ':' << p->chunks() << ':' << p->stored() << ':'
+          << p->decoded();
+    }
+    for (const std::uint32_t slots : *zone->slots()) out << ' ' << slots;
+    for (const fb::Node* node : *zone->nodes()) {
+      out << ' ' << node->id() << ' ' << node->x() << ' ' << node->y() << ' ' << node->z();
+    }
+  }
+  for (const fb::ZoneEdge* edge : *manifest.edges()) {
+    out << "\n" << edge->zone_a() << ' ' << edge->zone_b() << ' ' << edge->links();
+  }
+  return out.str();
+}
+
+TEST(LyingManifests, WithAnyBitChangedUnderARightDigestAreFoundOrClaimTheSame) {
+  SmallMap map;
+  Bytes& file = map.folder.files[std::string(kManifestName)];
+  const std::string truth = claims(**check_manifest(file));
+  const std::size_t end = file.size() - sizeof(ManifestTail);
+  std::size_t found = 0;
+  for (std::size_t bit = sizeof(ManifestHeader) * 8; bit < end * 8; ++bit) {
+    const auto mask = static_cast<std::byte>(1u << (bit % 8));
+    file[bit / 8] ^= mask;
+    test_support::seal_manifest(file);
+    if (!verify_map(map.folder).whole()) {
+      ++found;
+    } else {
+      EXPECT_EQ(claims(**check_manifest(file)), truth) << "byte " << bit / 8 << " bit " << bit % 8;
+    }
+    file[bit / 8] ^= mask;
+  }
+  EXPECT_GT(found, (end - sizeof(ManifestHeader)) * 8 / 2);
+}
+
+TEST(LyingManifests, ThatAreMissingLeaveThePacksToBeCheckedByThemselves) {
+  SmallMap map;
+  map.folder.files.erase(std::string(kManifestName));
+  map.folder.files[map.packs[1].file].back() ^= std::byte{1};
+  const Verdict verdict = verify_map(map.folder);
+  EXPECT_EQ(verdict.packs, 2u);
+  ASSERT_EQ(verdict.problems.size(), 2u) << list(verdict.problems);
+  EXPECT_EQ(verdict.problems[0].place.file, kManifestName);
+  EXPECT_EQ(verdict.problems[1].place.file, map.packs[1].file);
+}
+
+TEST(LyingManifests, DoNotMakeFilesBesideTheMapAProblem) {
+  SmallMap map;
+  map.folder.files["c-0123456789abcdef.zpk"] = Bytes(10);
+  map.folder.files["pack.zpk.part-77-0"] = Bytes(10);
+  map.folder.files["notes.txt"] = Bytes(10);
+  const Verdict verdict = verify_map(map.folder);
+  EXPECT_TRUE(verdict.whole()) << list(verdict.problems);
+  EXPECT_THAT(verdict.unnamed,
+              testing::ElementsAre("c-0123456789abcdef.zpk", "pack.zpk.part-77-0"));
+}
+
+TEST(LyingManifests, WithOneSignatureInTwoZonesAreFound) {
+  test_support::SignatureRecipe one;
+  one.x = 4;  // on the border: both could hold it
+  one.y = 2;
+  SmallMap map({one}, {one});
+  EXPECT_THAT(list(verify_map(map.folder).problems),
+              testing::HasSubstr("signature 1 is in zone a and in zone b"));
+}
+
+}  // namespace
+}  // namespace zonepack::packer
