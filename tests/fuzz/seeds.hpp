@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "packer/record.hpp"
+
+namespace zonepack::fuzz {
+
+// Inputs that the entries accept, taken from small maps of every payload kind.
+struct Seeds {
+  std::vector<packer::Bytes> packs, indexes, chunks, blocks, manifests;
+};
+
+const Seeds& seeds();
+
+}  // namespace zonepack::fuzz
