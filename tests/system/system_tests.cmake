@@ -24,3 +24,13 @@ if(TARGET zoned)
   set_tests_properties(system/runtime_without_packer PROPERTIES
                        ENVIRONMENT "CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}")
 endif()
+
+# Packs and manifests as others see them: builds that are killed, and files read without our code.
+if(TARGET zonepack)
+  add_test(NAME system/killed_build
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/killed_build_test.sh $<TARGET_FILE:zonepack>
+                   ${PROJECT_SOURCE_DIR}/tests/data)
+  set_tests_properties(system/killed_build PROPERTIES TIMEOUT 900)
+endif()
+add_test(NAME system/read_by_hand
+         COMMAND ${CMAKE_CURRENT_LIST_DIR}/read_by_hand_test.sh ${PROJECT_SOURCE_DIR})
