@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "runtime/pack_format/checksum.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace zonepack {
 namespace {
@@ -37,8 +38,8 @@ std::string read(const std::string& path) {
 
 class EventLogTest : public testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(path); }
-  const std::string path = testing::TempDir() + "event_log_test.jsonl";
+  const test_support::TemporaryFolder folder;
+  const std::string path = folder / "events.jsonl";
 };
 
 TEST_F(EventLogTest, WritesOneJsonObjectALineWithItsFieldsInOrder) {

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <sstream>
@@ -433,7 +434,7 @@ TEST(ZoneFileWarning, NamesZonesWithoutATypeAndFeaturesLeftOut) {
 }
 
 TEST(ZoneFile, LoadThrowsEveryFaultWithFileAndLine) {
-  const std::string path = ::testing::TempDir() + "two_faults.geojson";
+  const std::string path = ::testing::TempDir() + "two_faults_" + std::to_string(::getpid()) + ".geojson";
   std::ofstream(path) << collection(
       {zone("A", "[[0,0],[4,4],[4,0],[0,4],[0,0]]"), box("a/b", 5, 0, 6, 1)});
   try {
