@@ -57,8 +57,9 @@ bool parse_stamp(std::string_view word, std::int64_t& stamp_ns) {
     stamp_ns = static_cast<std::int64_t>(value * kSecond_ns);
     return true;
   }
+  if (seconds >= kLastSecond) return false;
   stamp_ns = seconds * kSecond_ns + fraction_ns;
-  return seconds < kLastSecond;
+  return true;
 }
 
 // Calls take(words) for every record; its text, if any, is what is wrong with the line. The first
