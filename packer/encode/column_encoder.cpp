@@ -185,6 +185,33 @@ std::optional<std::int32_t> index_on(float value, float cell, float origin) {
   return index;
 }
 
+// Indices of coordinates that come one after the other. Most are the one before or the next to it;
+// that is tried first where no two indices can share a coordinate.
+class IndexFinder {
+ public:
+  IndexFinder(float cell, float origin) : cell_(cell), origin_(origin) {
+    constexpr float kExact = 1 << 20;  // so many cells away, a coordinate is exact to 1/8 cell
+    limit_ = std::abs(origin) < cell * kExact ? cell * kExact : 0;
+  }
+
+  std::optional<std::int32_t> operator()(float value) {
+    if (std::abs(value) < limit_ && last_) {
+      if (is(value, *last_)) return last_;
+      if (is(value, *last_ + 1)) return last_ = *last_ + 1;
+    }
+    return last_ = index_on(value, cell_, origin_);
+  }
+
+ private:
+  bool is(float value, std::int32_t index) const {
+    const float back = static_cast<float>(index) * cell_ + origin_;
+    return std::bit_cast<std::uint32_t>(back) == std::bit_cast<std::uint32_t>(value);
+  }
+
+  float cell_, origin_, limit_;
+  std::optional<std::int32_t> last_;
+};
+
 bool origin_fits(std::span<const float> distinct, float cell, float origin) {
   return std::all_of(distinct.begin(), distinct.end(),
                      [&](float v) { return index_on(v, cell, origin).has_value(); });
@@ -230,9 +257,10 @@ std::optional<EncodedColumn> LatticeEncoder::encode(std::span<const std::byte> c
   std::vector<std::int32_t> ix(rows), iy(rows);
   const auto place = [&] {
     if (!origin_x_ || !origin_y_) return false;
+    IndexFinder index_x(cell_size, *origin_x_), index_y(cell_size, *origin_y_);
     for (std::size_t i = 0; i < rows; ++i) {
-      const auto x = index_on(values[2 * i], cell_size, *origin_x_);
-      const auto y = index_on(values[2 * i + 1], cell_size, *origin_y_);
+      const auto x = index_x(values[2 * i]);
+      const auto y = index_y(values[2 * i + 1]);
       if (!x || !y) return false;
       ix[i] = *x;
       iy[i] = *y;
