@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/pack_format/chunk_view.hpp"
 
+#include "runtime/pack_format/struct_alignment.hpp"
+
 namespace zonepack {
 namespace {
 
@@ -102,6 +104,7 @@ Result<void> check_core_chunk(ByteSpan bytes, const fb::ChunkEntry& entry) noexc
   flatbuffers::Verifier verifier = verifier_for(bytes);
   if (!fb::VerifyCoreChunkBuffer(verifier)) return ErrorCode::kBadStructure;
   const fb::CoreChunk& chunk = *fb::GetCoreChunk(bytes.data());
+  if (!is_aligned(chunk.informations())) return ErrorCode::kBadStructure;
   const std::uint32_t informations = chunk.informations() ? chunk.informations()->size() : 0;
   const std::uint32_t calibrations = chunk.calibrations() ? chunk.calibrations()->size() : 0;
   constexpr std::uint32_t kNone = 0xFFFFFFFFu;
@@ -112,6 +115,10 @@ Result<void> check_core_chunk(ByteSpan bytes, const fb::ChunkEntry& entry) noexc
     if (!first && !signature->continued()) ++ordinal;
     first = false;
     if (signature->calibration() != kNone && signature->calibration() >= calibrations) {
+      return ErrorCode::kBadStructure;
+    }
+    if (!is_aligned(signature->pose()) || !is_aligned(signature->odometry_pose()) ||
+        !is_aligned(signature->ground_truth_pose()) || !is_aligned(signature->links())) {
       return ErrorCode::kBadStructure;
     }
     if (signature->links() == nullptr) continue;
@@ -130,6 +137,9 @@ Result<void> check_bulk_chunk(ByteSpan bytes, const fb::ChunkEntry& entry) noexc
   flatbuffers::Verifier verifier = verifier_for(bytes);
   if (!fb::VerifyBulkChunkBuffer(verifier)) return ErrorCode::kBadStructure;
   const fb::BulkChunk& chunk = *fb::GetBulkChunk(bytes.data());
+  if (!is_aligned(chunk.records()) || !is_aligned(chunk.columns())) {
+    return ErrorCode::kBadStructure;
+  }
   const ByteSpan own{reinterpret_cast<const std::byte*>(chunk.bytes()->data()),
                      chunk.bytes()->size()};
   for (const fb::Record* record : *chunk.records()) {

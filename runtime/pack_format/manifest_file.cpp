@@ -7,6 +7,7 @@
 
 #include "runtime/pack_format/limits.hpp"
 #include "runtime/pack_format/pack_file.hpp"
+#include "runtime/pack_format/struct_alignment.hpp"
 
 namespace zonepack {
 namespace {
@@ -16,7 +17,7 @@ std::string_view view_of(const flatbuffers::String* text) noexcept {
 }
 
 bool ring_is_sound(const fb::Ring* ring, std::uint32_t* vertices) noexcept {
-  if (ring->points()->size() < 3) return false;
+  if (ring->points()->size() < 3 || !is_aligned(ring->points())) return false;
   *vertices += ring->points()->size();
   for (const fb::Point* p : *ring->points()) {
     if (!std::isfinite(p->x()) || !std::isfinite(p->y())) return false;
@@ -42,6 +43,7 @@ bool zone_is_sound(const fb::Manifest& manifest, const fb::Zone& zone) noexcept 
       if (!ring_is_sound(hole, &vertices)) return false;
     }
   }
+  if (!is_aligned(zone.payloads()) || !is_aligned(zone.nodes())) return false;
   for (const fb::PayloadBytes* payload : *zone.payloads()) {
     if (payload->kind() >= 32) return false;
   }
@@ -93,7 +95,8 @@ Result<const fb::Manifest*> check_manifest(ByteSpan file) noexcept {
   if (manifest.portals() != nullptr) {
     if (manifest.portals()->size() > kMaxPortals) return ErrorCode::kTooLarge;
     for (const fb::Portal* portal : *manifest.portals()) {
-      if (portal->zone_a() >= manifest.zones()->size() ||
+      if (!is_aligned(portal->p()) || !is_aligned(portal->q()) ||
+          portal->zone_a() >= manifest.zones()->size() ||
           portal->zone_b() >= manifest.zones()->size() || portal->zone_a() == portal->zone_b() ||
           !std::isfinite(portal->p()->x()) || !std::isfinite(portal->p()->y()) ||
           !std::isfinite(portal->q()->x()) || !std::isfinite(portal->q()->y())) {
@@ -101,6 +104,7 @@ Result<const fb::Manifest*> check_manifest(ByteSpan file) noexcept {
       }
     }
   }
+  if (!is_aligned(manifest.edges())) return ErrorCode::kBadStructure;
   if (manifest.edges() != nullptr) {
     for (const fb::ZoneEdge* edge : *manifest.edges()) {
       if (edge->zone_a() >= edge->zone_b() || edge->zone_b() >= manifest.zones()->size()) {

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstring>
 
+#include "runtime/pack_format/struct_alignment.hpp"
+
 namespace zonepack {
 namespace {
 
@@ -68,6 +70,7 @@ Result<const fb::PackIndex*> check_index(ByteSpan header_16_bytes, ByteSpan inde
                                  2, 8);
   if (!verifier.VerifyBuffer<fb::PackIndex>()) return ErrorCode::kBadStructure;
   const auto* const root = flatbuffers::GetRoot<fb::PackIndex>(index.data());
+  if (!is_aligned(root->chunks())) return ErrorCode::kBadStructure;
   if (root->slot_bytes() != kSlotBytes) return {ErrorCode::kMismatch, root->slot_bytes()};
   if (root->chunks()->size() > kMaxChunksPerPack || root->signatures() > kMaxSignaturesPerZone ||
       root->zone()->size() > kMaxNameBytes) {

@@ -13,6 +13,7 @@
 #include "packer/verify/map_verifier.hpp"
 #include "runtime/pack_format/accounting.hpp"
 #include "runtime/pack_format/pack_file.hpp"
+#include "runtime/pack_format/struct_alignment.hpp"
 #include "runtime/pack_format/zone_view.hpp"
 #include "tests/support/memory_folder.hpp"
 
@@ -151,7 +152,8 @@ bool read_index(ByteSpan bytes) {
   // Where the chunks end is the index's to say.
   tail.index_offset = sizeof header;
   flatbuffers::Verifier verifier(reinterpret_cast<const std::uint8_t*>(index.data()), bytes.size());
-  if (verifier.VerifyBuffer<fb::PackIndex>()) {
+  if (verifier.VerifyBuffer<fb::PackIndex>() &&
+      is_aligned(flatbuffers::GetRoot<fb::PackIndex>(index.data())->chunks())) {
     for (const fb::ChunkEntry* entry :
          *flatbuffers::GetRoot<fb::PackIndex>(index.data())->chunks()) {
       tail.index_offset = entry->offset() + entry->stored_size();
