@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "platform/base/require.hpp"
 #include "runtime/odometry/se2.hpp"
 
 namespace zonepack {
@@ -26,30 +27,37 @@ Cycle::Cycle(const CycleConfig& settings, const CycleParts& parts)
       filter_(settings.filter),
       tracker_(parts.graph, settings.tracker),
       preload_(parts.graph, parts.load_s, settings.preload),
-      keeper_(parts.memory, parts.loader, events_, parts.needs, parts.pinned, settings.keeper),
+      keeper_(parts.memory, parts.loader, events_, parts.needs, parts.pinned, parts.directory,
+              settings.keeper),
       tracker_settings_(settings.tracker) {}
 
 void Cycle::start_at(std::int64_t now_ns, const Pose2& T_map_base) noexcept {
   filter_.start_at(now_ns, T_map_base);
 }
 
-const CycleState& Cycle::run(std::int64_t now_ns, std::span<const CanFrame> frames,
-                             std::span<const PoseCorrection> corrections) noexcept {
+const CycleState& Cycle::run(const CycleInput& input) noexcept {
+  const std::int64_t now_ns = input.now_ns;
   if (state_.cycles == 0) start_ns_ = now_ns;
   events_.begin_cycle(state_.cycles, now_ns - start_ns_);
   if (state_.cycles == 0) emit(EventKind::kStart);
   ++state_.cycles;
 
   const bool had_pose = state_.pose.valid;
-  for (const CanFrame& frame : frames) {
+  for (const CanFrame& frame : input.frames) {
     if (const auto increment = odometry_.take(frame)) filter_.predict(*increment);
   }
   watch_odometry(now_ns);
-  for (const PoseCorrection& fix : corrections) take(fix, now_ns);
+  for (const PoseCorrection& fix : input.corrections) take(fix, now_ns);
   state_.pose = filter_.estimate(now_ns);
   if (state_.pose.valid && !had_pose) emit(EventKind::kPoseInitialised);
 
-  keeper_.collect(now_ns);
+  keeper_.collect(now_ns, input.loads);
+  ZP_REQUIRE(input.commands.size() <= kMostCommands);
+  reply_count_ = 0;
+  for (const Command& command : input.commands) {
+    replies_[reply_count_] = obey(command, now_ns);
+    replies_[reply_count_++].id = command.id;
+  }
   follow_zones();
   const Wanted wanted = list_wanted();
   keeper_.keep(now_ns, {wanted.zones.data(), wanted.count}, wanted.urgent);
@@ -91,6 +99,51 @@ void Cycle::watch_odometry(std::int64_t now_ns) noexcept {
   emit(stale ? EventKind::kOdometryStale : EventKind::kOdometryResumed);
 }
 
+CommandReply Cycle::obey(const Command& command, std::int64_t now_ns) noexcept {
+  CommandReply reply;
+  const auto exists = [&](ZoneId zone) { return zone < needs_.size(); };
+  const auto refuse = [&](Error error) { reply.error = error; };
+  switch (command.kind) {
+    case Command::Kind::kPin:
+      if (!exists(command.zone)) {
+        refuse({ErrorCode::kNotFound});
+      } else if (const auto pinned = keeper_.pin(command.zone); !pinned) {
+        refuse(pinned.error());
+      }
+      break;
+    case Command::Kind::kUnpin:
+      if (exists(command.zone)) {
+        keeper_.unpin(command.zone);
+      } else {
+        refuse({ErrorCode::kNotFound});
+      }
+      break;
+    case Command::Kind::kFreeze:
+    case Command::Kind::kUnfreeze:
+      memory_.freeze(command.kind == Command::Kind::kFreeze);
+      break;
+    case Command::Kind::kLease:
+      if (!exists(command.zone)) {
+        refuse({ErrorCode::kNotFound});
+      } else if (const auto lease = memory_.lease(command.zone, now_ns); lease) {
+        reply.lease = *lease;
+      } else {
+        refuse(lease.error());
+      }
+      break;
+    case Command::Kind::kRelease:
+      if (exists(command.lease.zone)) memory_.release(command.lease);
+      break;
+    case Command::Kind::kRouteHint:
+      route_length_ = 0;
+      for (std::size_t i = 0; i < command.route_length && i < route_.size(); ++i) {
+        if (exists(command.route[i])) route_[route_length_++] = command.route[i];
+      }
+      break;
+  }
+  return reply;
+}
+
 void Cycle::follow_zones() noexcept {
   const ZoneId before = tracker_.zone();
   if (tracker_.update(state_.pose)) {
@@ -127,7 +180,15 @@ Cycle::Wanted Cycle::list_wanted() const noexcept {
   }
   wanted.urgent = wanted.count;
   for (const Approach& approach : preload_.approaches()) wanted.add(approach.zone);
+  want_route(wanted);
   return wanted;
+}
+
+// The next two zones of a hinted route, while the robot is on it.
+void Cycle::want_route(Wanted& wanted) const noexcept {
+  const auto end = route_.begin() + static_cast<std::ptrdiff_t>(route_length_);
+  auto next = std::find(route_.begin(), end, tracker_.zone());
+  for (int ahead = 0; ahead < 2 && next != end && ++next != end; ++ahead) wanted.add(*next);
 }
 
 void Cycle::finish() noexcept { emit(EventKind::kEnd); }

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "platform/can_bus.hpp"
+#include "runtime/command.hpp"
 #include "runtime/event.hpp"
 #include "runtime/map_keeper.hpp"
 #include "runtime/memory/residency.hpp"
@@ -37,6 +38,17 @@ struct CycleParts {
   Residency& memory;
   ZoneLoader& loader;
   EventSink& events;
+  ZoneDirectory* directory = nullptr;  // where readers find resident zones
+};
+
+// All that a cycle decides on, beside the settings and the map; what is recorded. Frames and
+// corrections are stamped on the clock of now_ns, which never falls.
+struct CycleInput {
+  std::int64_t now_ns = 0;
+  std::span<const CanFrame> frames{};
+  std::span<const PoseCorrection> corrections{};
+  std::span<const LoadResult> loads{};  // polled from the loader
+  std::span<const Command> commands{};  // at most Cycle::kMostCommands
 };
 
 struct CycleState {
@@ -52,20 +64,24 @@ struct CycleState {
 // One step of control, the same in a replay and on the robot: what arrived since the last step goes
 // through odometry, pose, zone and wanted zones to what is evicted and loaded.
 //
-// Invariant: a function of its inputs only: the settings, the map, and what run() is given and the
-// loader answers, in that order. Not of wall clock, memory addresses or timing.
-// Real-time: run() neither allocates, locks, waits nor throws; its work is bounded by the frames
-// and corrections given, plus the bounds of tracker, preload and keeper.   Threads: one.
+// Invariant: a function of its inputs only: the settings, the map, and what run() is given, in that
+// order. Not of wall clock, memory addresses or timing.
+// Real-time: run() neither allocates, locks, waits nor throws; its work is bounded by the frames,
+// corrections and commands given, plus the bounds of tracker, preload and keeper.   Threads: one.
 class Cycle {
  public:
+  static constexpr std::size_t kMostCommands = 16;
+
   Cycle(const CycleConfig& settings, const CycleParts& parts);
 
   // Where the robot may be, told before the first run(): a guess to start from.
   void start_at(std::int64_t now_ns, const Pose2& T_map_base) noexcept;
 
-  // now_ns never falls, and is the clock of frames and corrections. The first call starts the run.
-  const CycleState& run(std::int64_t now_ns, std::span<const CanFrame> frames,
-                        std::span<const PoseCorrection> corrections) noexcept;
+  // The first call starts the run.
+  const CycleState& run(const CycleInput& input) noexcept;
+
+  // What became of the last run's commands, in their order.
+  std::span<const CommandReply> replies() const noexcept { return {replies_.data(), reply_count_}; }
 
   // Records the end of the run.
   void finish() noexcept;
@@ -77,6 +93,7 @@ class Cycle {
  private:
   void take(const PoseCorrection& fix, std::int64_t now_ns) noexcept;
   void watch_odometry(std::int64_t now_ns) noexcept;
+  CommandReply obey(const Command& command, std::int64_t now_ns) noexcept;
   void follow_zones() noexcept;
   struct Wanted {
     std::array<ZoneId, MapKeeper::kMaxWanted> zones{};
@@ -85,6 +102,7 @@ class Cycle {
     void add(ZoneId zone) noexcept;
   };
   Wanted list_wanted() const noexcept;
+  void want_route(Wanted& wanted) const noexcept;
   void emit(EventKind kind, ZoneId zone = kNoZone, const char* reason = nullptr) noexcept;
 
   const ZoneGraph& graph_;
@@ -98,6 +116,10 @@ class Cycle {
   MapKeeper keeper_;
   TrackerSettings tracker_settings_;
   CycleState state_;
+  std::array<ZoneId, Command::kMostRoute> route_{};
+  std::size_t route_length_ = 0;
+  std::array<CommandReply, kMostCommands> replies_{};
+  std::size_t reply_count_ = 0;
   std::int64_t start_ns_ = 0;
   bool odometry_stale_ = true;
 };

@@ -9,35 +9,53 @@ namespace zonepack {
 
 MapKeeper::MapKeeper(Residency& memory, ZoneLoader& loader, EventStamper& events,
                      std::span<const ZoneNeed> needs, std::span<const ZoneId> pinned,
-                     const MapKeeperSettings& settings)
+                     ZoneDirectory* directory, const MapKeeperSettings& settings)
     : memory_(memory),
       loader_(loader),
       events_(events),
       needs_(needs),
-      pinned_(pinned),
+      most_pins_(pinned.size() + kMostPins),
+      directory_(directory),
       settings_(settings),
       retries_(needs.size()) {
   ZP_REQUIRE(memory.zone_count() == needs.size());
+  pinned_.reserve(most_pins_);
+  pinned_.assign(pinned.begin(), pinned.end());
 }
 
-void MapKeeper::collect(std::int64_t now_ns) noexcept {
-  while (const auto result = loader_.poll()) {
-    ZP_REQUIRE(result->zone == loading_);
+void MapKeeper::collect(std::int64_t now_ns, std::span<const LoadResult> loads) noexcept {
+  for (const LoadResult& result : loads) {
+    ZP_REQUIRE(result.zone == loading_);
     loading_ = kNoZone;
-    if (result->error.code == ErrorCode::kOk) {
-      memory_.complete(result->zone, result->generation, result->slots);
-      retries_[result->zone] = {};
-      emit(EventKind::kLoadDone, result->zone);
+    if (result.error.code == ErrorCode::kOk) {
+      memory_.complete(result.zone, result.generation, result.slots);
+      if (directory_ != nullptr) directory_->publish(result.zone, result.generation, result.slots);
+      retries_[result.zone] = {};
+      emit(EventKind::kLoadDone, result.zone);
     } else {
-      memory_.give_up(result->zone, result->generation);
-      if (result->error.code == ErrorCode::kCancelled) {
-        emit(EventKind::kLoadGivenUp, result->zone);
+      memory_.give_up(result.zone, result.generation);
+      if (result.error.code == ErrorCode::kCancelled) {
+        emit(EventKind::kLoadGivenUp, result.zone);
       } else {
-        fail(result->zone, result->error.code, now_ns);
+        fail(result.zone, result.error.code, now_ns);
       }
     }
   }
   memory_.expire_leases(now_ns);
+}
+
+Result<void> MapKeeper::pin(ZoneId zone) noexcept {
+  if (memory_.pinned(zone)) return {};
+  if (pinned_.size() == most_pins_) return {ErrorCode::kNoRoom, needs_[zone].slots};
+  if (const auto accepted = memory_.pin(zone, needs_[zone]); !accepted) return accepted;
+  pinned_.push_back(zone);
+  return {};
+}
+
+void MapKeeper::unpin(ZoneId zone) noexcept {
+  if (!memory_.pinned(zone)) return;
+  memory_.unpin(zone);
+  std::erase(pinned_, zone);
 }
 
 void MapKeeper::fail(ZoneId zone, ErrorCode code, std::int64_t now_ns) noexcept {
@@ -114,6 +132,7 @@ void MapKeeper::keep_pinned(std::int64_t now_ns) noexcept {
 
 Result<std::size_t> MapKeeper::admit(ZoneId zone, Purpose purpose) noexcept {
   const auto result = memory_.admit(zone, needs_[zone], purpose, [this](const Eviction& evicted) {
+    if (directory_ != nullptr) directory_->withdraw(evicted.zone);
     loader_.take_back(evicted.slots);
     emit(EventKind::kEvicted, evicted.zone);
   });

@@ -9,6 +9,7 @@
 
 #include "runtime/event.hpp"
 #include "runtime/memory/residency.hpp"
+#include "runtime/memory/zone_directory.hpp"
 #include "runtime/zone_loader.hpp"
 
 namespace zonepack {
@@ -31,15 +32,22 @@ struct MapKeeperSettings {
 class MapKeeper {
  public:
   static constexpr std::size_t kMaxWanted = 16;
+  static constexpr std::size_t kMostPins = 64;  // beside those given at the start
 
   // needs: of every zone, by ZoneId. The pinned zones must have been accepted by Residency::pin().
-  // References and spans must outlive this object.
+  // directory: told which zones can be read; may be null. References and spans must outlive this
+  // object; `pinned` is copied.
   MapKeeper(Residency& memory, ZoneLoader& loader, EventStamper& events,
             std::span<const ZoneNeed> needs, std::span<const ZoneId> pinned,
-            const MapKeeperSettings& settings = {});
+            ZoneDirectory* directory = nullptr, const MapKeeperSettings& settings = {});
 
   // Takes the loader's results; call once a cycle, before keep().
-  void collect(std::int64_t now_ns) noexcept;
+  void collect(std::int64_t now_ns, std::span<const LoadResult> loads) noexcept;
+
+  // Keeps a zone in memory from the next keep() on, until unpin(). kNoRoom when the pins and the
+  // largest pair of neighbours would not fit together, or there are too many.
+  Result<void> pin(ZoneId zone) noexcept;
+  void unpin(ZoneId zone) noexcept;
 
   // Takes what is wanted in this cycle, most urgent first, no zone twice, at most kMaxWanted. The
   // first is the robot's own zone; those after the first `urgent` are only possible.
@@ -73,7 +81,9 @@ class MapKeeper {
   ZoneLoader& loader_;
   EventStamper& events_;
   std::span<const ZoneNeed> needs_;
-  std::span<const ZoneId> pinned_;
+  std::vector<ZoneId> pinned_;  // capacity for kMostPins more
+  std::size_t most_pins_;
+  ZoneDirectory* directory_;
   MapKeeperSettings settings_;
   std::vector<Retry> retries_;
   std::array<ZoneId, kMaxWanted> wanted_{};

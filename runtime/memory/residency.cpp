@@ -57,8 +57,10 @@ Result<void> Residency::check(ZoneId zone, ZoneNeed need, Purpose purpose) const
   }
   // What is used and what is free together are the limit, so these sums cannot overflow.
   NeedSum available = free();
-  available.add(evictable_.sum());
-  if (purpose == Purpose::kOwnZone) available.add(leased_.sum());
+  if (!frozen_) {
+    available.add(evictable_.sum());
+    if (purpose == Purpose::kOwnZone) available.add(leased_.sum());
+  }
   if (!fits(need, available)) return {ErrorCode::kNoRoom, need.slots};
   return {};
 }

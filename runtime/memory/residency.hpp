@@ -107,6 +107,10 @@ class Residency {
   Result<void> pin(ZoneId zone, ZoneNeed need) noexcept;
   void unpin(ZoneId zone) noexcept;
 
+  // While frozen nothing is evicted: admit() says kNoRoom where it would have to.
+  void freeze(bool frozen) noexcept { frozen_ = frozen; }
+  bool frozen() const noexcept { return frozen_; }
+
   // Marks a zone as most recently used.
   void touch(ZoneId zone) noexcept;
 
@@ -131,7 +135,9 @@ class Residency {
   std::uint32_t slot_count() const noexcept { return slot_count_; }
   ByteCount charged() const noexcept { return limits_.fixed + used_.slots * limits_.slot_bytes; }
   std::uint64_t signatures() const noexcept { return used_.signatures; }
-  // Of what is charged, the part that is decoded and usable.
+  // What zones are charged for.
+  const NeedSum& used_sum() const noexcept { return used_; }
+  // Of that, the part that is decoded and usable.
   const NeedSum& resident_sum() const noexcept { return resident_; }
   const ResidencyLimits& limits() const noexcept { return limits_; }
   const ResidencyCounters& counters() const noexcept { return counters_; }
@@ -181,6 +187,7 @@ class Residency {
   NeedSum used_;
   NeedSum resident_;
   NeedSum pinned_;
+  bool frozen_ = false;
   ResidencyCounters counters_;
 };
 

@@ -5,10 +5,16 @@
 
 namespace zonepack {
 
-SlotPool::SlotPool(std::uint32_t slots) : next_(slots, kNoSlot) {
-  ZP_REQUIRE(slots < kNoSlot);
+SlotPool::SlotPool(std::uint32_t slots) : own_(slots), next_(own_) { free_all(); }
+
+SlotPool::SlotPool(std::span<SlotIndex> links) : next_(links) { free_all(); }
+
+void SlotPool::free_all() noexcept {
+  ZP_REQUIRE(next_.size() < kNoSlot);
+  const auto slots = static_cast<std::uint32_t>(next_.size());
   if (slots == 0) return;
   for (SlotIndex i = 0; i + 1 < slots; ++i) next_[i] = i + 1;
+  next_[slots - 1] = kNoSlot;
   free_ = {0, slots - 1, slots};
 }
 

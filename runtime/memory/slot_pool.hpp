@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
@@ -29,6 +30,10 @@ struct SlotChain {
 class SlotPool {
  public:
   explicit SlotPool(std::uint32_t slots);
+  // Keeps its links in memory that outlives it, so that others can follow chains: one per slot.
+  explicit SlotPool(std::span<SlotIndex> links);
+  SlotPool(const SlotPool&) = delete;
+  SlotPool& operator=(const SlotPool&) = delete;
 
   // Moves one free slot to the end of `chain`; false when none is free.
   bool take_one(SlotChain& chain) noexcept;
@@ -49,7 +54,10 @@ class SlotPool {
   static ByteCount table_bytes(std::uint32_t slots) noexcept { return ByteCount{4} * slots; }
 
  private:
-  std::vector<SlotIndex> next_;
+  void free_all() noexcept;
+
+  std::vector<SlotIndex> own_;
+  std::span<SlotIndex> next_;
   SlotChain free_;
 };
 

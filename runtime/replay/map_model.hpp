@@ -22,9 +22,9 @@ std::vector<LoadWork> work_of(const Catalog& catalog);
 std::vector<float> load_times_of(const std::vector<LoadWork>& work, const LoadRates& rates,
                                  std::int64_t period_ns);
 
-// Limits for a budget. Without one: the smallest that holds any zone, any one neighbour and the pins, or
-// the whole map when a limit of signatures is given, so that it alone limits, as the paper's MemoryThr does.
-// lease_ns is left 0: nobody reads in a replay.
+// Limits for a budget. Without one: the smallest that holds any zone, any one neighbour and the
+// pins, or the whole map when a limit of signatures is given, so that it alone limits, as the
+// paper's MemoryThr does. lease_ns is left 0: nobody reads in a replay.
 ResidencyLimits limits_for(const Catalog& catalog, std::optional<ByteCount> budget,
                            std::uint64_t max_signatures, const std::vector<ZoneId>& pinned);
 

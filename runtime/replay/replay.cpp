@@ -54,7 +54,7 @@ class Run {
         loader_(slots_, work_, input.rates, filler_.get()),
         bus_(&input.frames),
         log_([this](ZoneId zone) { return std::string_view(graph_.name(zone)); }),
-        recorder_(graph_, needs_, input.truth, input.period_ns, log_) {}
+        recorder_(graph_, needs_, input.truth, input.period_ns, limits, log_) {}
 
   std::optional<ReplayResult> drive(std::string& fault);
 
@@ -134,6 +134,7 @@ std::optional<ReplayResult> Run::drive(std::string& fault) {
 
 void Run::run_cycles(Cycle& cycle, std::int64_t start_ns) {
   std::vector<CanFrame> frames(input_.most_frames);
+  std::vector<LoadResult> loads;
   const std::vector<PoseCorrection>& corrections = input_.corrections;
   std::size_t taken = 0;
   for (std::int64_t now_ns = start_ns;; now_ns += input_.period_ns) {
@@ -143,9 +144,12 @@ void Run::run_cycles(Cycle& cycle, std::int64_t start_ns) {
     frames_ += count;
     std::size_t end = taken;
     while (end < corrections.size() && corrections[end].received_ns <= now_ns) ++end;
-    cycle.run(now_ns, {frames.data(), count}, {corrections.data() + taken, end - taken});
+    loads.clear();
+    while (const auto load = loader_.poll()) loads.push_back(*load);
+    cycle.run(
+        {now_ns, {frames.data(), count}, {corrections.data() + taken, end - taken}, loads, {}});
     taken = end;
-    recorder_.after_cycle(now_ns, cycle.state(), memory_);
+    recorder_.after_cycle(record_of(now_ns, cycle.state(), memory_));
     if (!bus_.next_arrival_ns()) return;
   }
 }
@@ -158,7 +162,7 @@ std::optional<ReplayResult> Run::result(const Cycle& cycle, std::string& fault) 
   }
   ReplayResult result;
   RunSummary& summary = result.summary;
-  recorder_.summarise(memory_, summary);
+  recorder_.summarise(summary);
   summary.bytes_loaded = loader_.bytes_loaded();
   summary.zone_switches = cycle.state().zone_switches;
   summary.can_frames = frames_;

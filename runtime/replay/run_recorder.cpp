@@ -17,55 +17,74 @@ double percentile(const std::vector<float>& sorted, double share) {
 
 }  // namespace
 
+CycleRecord record_of(std::int64_t now_ns, const CycleState& state, const Residency& memory) {
+  return {now_ns, state, memory.used_sum(), memory.resident_sum(), memory.counters()};
+}
+
 RunRecorder::RunRecorder(const ZoneGraph& graph, std::span<const ZoneNeed> needs,
-                         const TruthTrack* truth, std::int64_t period_ns, EventSink& log)
-    : graph_(graph), needs_(needs), truth_(truth), period_ns_(period_ns), log_(log) {}
+                         const TruthTrack* truth, std::int64_t period_ns,
+                         const ResidencyLimits& limits, EventSink& log)
+    : graph_(graph),
+      needs_(needs),
+      truth_(truth),
+      period_ns_(period_ns),
+      limits_(limits),
+      log_(log),
+      held_(needs.size(), Held::kNot) {}
 
 void RunRecorder::on_event(const Event& event) noexcept {
   log_.on_event(event);
   trace_.events.push_back(
       {static_cast<double>(event.t_ns) * 1e-9, to_string(event.kind), event.zone});
+  switch (event.kind) {
+    case EventKind::kLoadStarted:
+      held_[event.zone] = Held::kCharged;
+      charged_.add(needs_[event.zone]);
+      break;
+    case EventKind::kLoadDone:
+      held_[event.zone] = Held::kResident;
+      break;
+    case EventKind::kLoadGivenUp:
+    case EventKind::kLoadFailed:
+    case EventKind::kEvicted:
+      held_[event.zone] = Held::kNot;
+      charged_.remove(needs_[event.zone]);
+      break;
+    default:
+      break;
+  }
 }
 
-void RunRecorder::after_cycle(std::int64_t now_ns, const CycleState& state,
-                              const Residency& memory) {
-  if (cycles_ == 0) start_ns_ = now_ns;
-  now_ns_ = now_ns;
+void RunRecorder::after_cycle(const CycleRecord& cycle) {
+  if (cycles_ == 0) start_ns_ = cycle.now_ns;
+  now_ns_ = cycle.now_ns;
   ++cycles_;
-  const Recount charged = recount(memory);
-  check_limits(charged, memory);
-  watch_zone(state, memory);
-  blocked_cycles_ += state.blocked;
-  if (true_pose_ && state.pose.valid) {
-    const Pose2 &truth = *true_pose_, &estimate = state.pose.T_map_base;
+  counters_ = cycle.counters;
+  check_limits(cycle);
+  watch_zone(cycle);
+  blocked_cycles_ += cycle.state.blocked;
+  if (true_pose_ && cycle.state.pose.valid) {
+    const Pose2 &truth = *true_pose_, &estimate = cycle.state.pose.T_map_base;
     errors_m_.push_back(static_cast<float>(
         distance_m(Point2{truth.x_m, truth.y_m}, Point2{estimate.x_m, estimate.y_m})));
   }
-  keep_sample(state, charged, memory);
+  keep_sample(cycle);
 }
 
-RunRecorder::Recount RunRecorder::recount(const Residency& memory) const {
-  Recount sum;
-  for (ZoneId zone = 0; zone < needs_.size(); ++zone) {
-    if (memory.state(zone) == ZoneState::kAbsent) continue;
-    sum.slots += needs_[zone].slots;
-    sum.signatures += needs_[zone].signatures;
-  }
-  return sum;
-}
-
-void RunRecorder::check_limits(const Recount& charged, const Residency& memory) {
-  const ResidencyLimits& limits = memory.limits();
-  peak_.slots = std::max(peak_.slots, charged.slots);
-  peak_.signatures = std::max(peak_.signatures, charged.signatures);
-  const bool over_bytes = limits.fixed > limits.budget ||
-                          charged.slots * limits.slot_bytes > limits.budget - limits.fixed;
+void RunRecorder::check_limits(const CycleRecord& cycle) {
+  peak_.slots = std::max(peak_.slots, charged_.slots);
+  peak_.signatures = std::max(peak_.signatures, charged_.signatures);
+  const bool over_bytes = limits_.fixed > limits_.budget ||
+                          charged_.slots * limits_.slot_bytes > limits_.budget - limits_.fixed;
   const bool over_signatures =
-      limits.max_signatures > 0 && charged.signatures > limits.max_signatures;
-  violations_ += over_bytes || over_signatures;
+      limits_.max_signatures > 0 && charged_.signatures > limits_.max_signatures;
+  const bool differs =
+      charged_.slots != cycle.charged.slots || charged_.signatures != cycle.charged.signatures;
+  violations_ += over_bytes || over_signatures || differs;
 }
 
-void RunRecorder::watch_zone(const CycleState& state, const Residency& memory) {
+void RunRecorder::watch_zone(const CycleRecord& cycle) {
+  const CycleState& state = cycle.state;
   true_pose_ = truth_ != nullptr ? truth_->at(now_ns_) : std::nullopt;
   ZoneId own = state.zone;
   if (true_pose_) {
@@ -78,13 +97,13 @@ void RunRecorder::watch_zone(const CycleState& state, const Residency& memory) {
   } else {
     true_zone_ = kNoZone;
   }
-  if (!first_resident_ && memory.counters().zones_loaded > 0) first_resident_ = cycles_ - 1;
-  absent_ = first_resident_ && own != kNoZone && !memory.resident(own);
+  if (!first_resident_ && cycle.counters.zones_loaded > 0) first_resident_ = cycles_ - 1;
+  absent_ = first_resident_ && own != kNoZone && held_[own] != Held::kResident;
   absent_cycles_ += absent_;
 }
 
-void RunRecorder::keep_sample(const CycleState& state, const Recount& charged,
-                              const Residency& memory) {
+void RunRecorder::keep_sample(const CycleRecord& cycle) {
+  const CycleState& state = cycle.state;
   TraceSample sample;
   sample.t_s = static_cast<double>(now_ns_ - start_ns_) * 1e-9;
   sample.pose_valid = state.pose.valid;
@@ -96,11 +115,11 @@ void RunRecorder::keep_sample(const CycleState& state, const Recount& charged,
   sample.true_zone = true_zone_;
   sample.zone_absent = absent_;
   sample.blocked = state.blocked;
-  sample.charged_bytes = memory.limits().fixed + charged.slots * memory.limits().slot_bytes;
-  sample.charged_signatures = charged.signatures;
-  sample.resident_signatures = memory.resident_sum().signatures;
-  sample.signatures_loaded = memory.counters().signatures_loaded;
-  sample.signatures_unloaded = memory.counters().signatures_unloaded;
+  sample.charged_bytes = limits_.fixed + charged_.slots * limits_.slot_bytes;
+  sample.charged_signatures = charged_.signatures;
+  sample.resident_signatures = cycle.resident.signatures;
+  sample.signatures_loaded = cycle.counters.signatures_loaded;
+  sample.signatures_unloaded = cycle.counters.signatures_unloaded;
   if (!trace_.samples.empty()) {
     const TraceSample& last = trace_.samples.back();
     const bool same = last.tracked_zone == sample.tracked_zone &&
@@ -119,18 +138,16 @@ double RunRecorder::seconds(std::uint64_t cycles) const noexcept {
   return static_cast<double>(cycles) * static_cast<double>(period_ns_) / 1e9;
 }
 
-void RunRecorder::summarise(const Residency& memory, RunSummary& summary) const {
-  const ResidencyLimits& limits = memory.limits();
-  const ResidencyCounters& counters = memory.counters();
-  summary.budget_bytes = limits.budget;
-  summary.peak_charged_bytes = limits.fixed + peak_.slots * limits.slot_bytes;
+void RunRecorder::summarise(RunSummary& summary) const {
+  summary.budget_bytes = limits_.budget;
+  summary.peak_charged_bytes = limits_.fixed + peak_.slots * limits_.slot_bytes;
   summary.budget_violations = violations_;
-  summary.max_signatures = limits.max_signatures;
+  summary.max_signatures = limits_.max_signatures;
   summary.peak_signatures = peak_.signatures;
-  summary.signatures_loaded = counters.signatures_loaded;
-  summary.signatures_unloaded = counters.signatures_unloaded;
-  summary.zones_loaded = counters.zones_loaded;
-  summary.zones_unloaded = counters.zones_unloaded;
+  summary.signatures_loaded = counters_.signatures_loaded;
+  summary.signatures_unloaded = counters_.signatures_unloaded;
+  summary.zones_loaded = counters_.zones_loaded;
+  summary.zones_unloaded = counters_.zones_unloaded;
   summary.start_s = seconds(first_resident_.value_or(cycles_));
   summary.zone_absent_s = seconds(absent_cycles_);
   summary.blocked_s = seconds(blocked_cycles_);

@@ -16,43 +16,54 @@
 
 namespace zonepack {
 
-// Watches a replay from outside and says how it went, in numbers and for drawing.
+// What a cycle did, for those who watch.
+struct CycleRecord {
+  std::int64_t now_ns = 0;
+  CycleState state;
+  NeedSum charged;   // as Residency counts
+  NeedSum resident;  // of that, usable
+  ResidencyCounters counters;
+};
+CycleRecord record_of(std::int64_t now_ns, const CycleState& state, const Residency& memory);
+
+// Watches a run from outside and says how it went, in numbers and for drawing.
 //
-// It counts what is charged anew in every cycle, zone by zone, and does not believe the sums that
-// Residency keeps. The robot's own zone is the zone that holds its true position (on no zone's
-// ground the one before), or the tracker's where there is no truth.
+// It keeps its own account of what is charged, zone by zone, from the events alone, and does not
+// believe the sums that Residency keeps: a cycle in which the two differ is a violation, like one
+// over a limit. The robot's own zone is the zone that holds its true position (on no zone's ground
+// the one before), or the tracker's where there is no truth.   Threads: one; allocates.
 class RunRecorder final : public EventSink {
  public:
   // truth may be null; everything must outlive this object. Events are passed on to `log`.
   RunRecorder(const ZoneGraph& graph, std::span<const ZoneNeed> needs, const TruthTrack* truth,
-              std::int64_t period_ns, EventSink& log);
+              std::int64_t period_ns, const ResidencyLimits& limits, EventSink& log);
 
   void on_event(const Event& event) noexcept override;
 
-  void after_cycle(std::int64_t now_ns, const CycleState& state, const Residency& memory);
+  // After the events of the cycle.
+  void after_cycle(const CycleRecord& cycle);
 
   // Fills the parts that are known here.
-  void summarise(const Residency& memory, RunSummary& summary) const;
+  void summarise(RunSummary& summary) const;
   RunTrace take_trace() { return std::move(trace_); }
 
  private:
-  struct Recount {
-    std::uint64_t slots = 0;
-    std::uint64_t signatures = 0;
-  };
+  enum class Held : std::uint8_t { kNot, kCharged, kResident };
 
-  Recount recount(const Residency& memory) const;
-  void check_limits(const Recount& recount, const Residency& memory);
-  void watch_zone(const CycleState& state, const Residency& memory);
-  void keep_sample(const CycleState& state, const Recount& recount, const Residency& memory);
+  void check_limits(const CycleRecord& cycle);
+  void watch_zone(const CycleRecord& cycle);
+  void keep_sample(const CycleRecord& cycle);
   double seconds(std::uint64_t cycles) const noexcept;
 
   const ZoneGraph& graph_;
   std::span<const ZoneNeed> needs_;
   const TruthTrack* truth_;
   std::int64_t period_ns_;
+  ResidencyLimits limits_;
   EventSink& log_;
 
+  std::vector<Held> held_;  // by ZoneId
+  NeedSum charged_;
   std::int64_t start_ns_ = 0;
   std::int64_t now_ns_ = 0;
   std::uint64_t cycles_ = 0;
@@ -61,7 +72,8 @@ class RunRecorder final : public EventSink {
   ZoneId true_zone_ = kNoZone;
   bool absent_ = false;
   std::uint64_t absent_cycles_ = 0, blocked_cycles_ = 0, wrong_cycles_ = 0, violations_ = 0;
-  Recount peak_;
+  NeedSum peak_;
+  ResidencyCounters counters_;
   std::vector<float> errors_m_;
   RunTrace trace_;
 };

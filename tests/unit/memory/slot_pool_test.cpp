@@ -55,6 +55,15 @@ TEST(SlotPool, GivingBackNothingChangesNothing) {
   EXPECT_EQ(pool.free_count(), 1u);
 }
 
+TEST(SlotPool, KeepsItsLinksWhereOthersCanFollowThem) {
+  std::vector<SlotIndex> links(3);
+  SlotPool pool(links);
+  SlotChain chain;
+  ASSERT_TRUE(pool.take(2, chain));
+  EXPECT_EQ(links[chain.head], chain.tail);
+  EXPECT_EQ(links[chain.tail], kNoSlot);
+}
+
 TEST(SlotPool, OfNoSlotsIsEmpty) {
   SlotPool pool(0);
   SlotChain chain;

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/replay/modelled_loader.hpp"
@@ -39,7 +41,14 @@ class CycleTest : public testing::Test, public EventSink {
     put(frame, 0, left_mm);
     put(frame, 4, right_mm);
     const testing_support::AllocationCount allocated;
-    cycle.run(now_ns, {&frame, with_frame ? 1u : 0u}, fixes);
+    std::array<LoadResult, 4> loads;
+    std::size_t load_count = 0;
+    while (const auto load = loader.poll()) loads[load_count++] = *load;
+    cycle.run({now_ns,
+               {&frame, with_frame ? 1u : 0u},
+               fixes,
+               {loads.data(), load_count},
+               std::exchange(commands, {})});
     allocations += allocated.count();
   }
 
@@ -93,6 +102,23 @@ class CycleTest : public testing::Test, public EventSink {
   Residency memory{3, {800, 0, 100, 0, {8, 20}, 0}};
   ModelledLoader loader{8, work, {1000, 1000}, nullptr};
   Cycle cycle{testing_support::sample_robot(), {graph, needs, load_s, {}, memory, loader, *this}};
+  Command command(Command::Kind kind, ZoneId zone = kNoZone) {
+    Command made;
+    made.kind = kind;
+    made.id = ++last_id;
+    made.zone = zone;
+    return made;
+  }
+
+  // The reply to one command, taken by the next cycle.
+  CommandReply ask(const Command& question) {
+    commands = {question};
+    step();
+    return cycle.replies()[0];
+  }
+
+  std::vector<Command> commands;
+  std::uint64_t last_id = 0;
   std::vector<Event> events;
   std::size_t allocations = 0;
   std::int64_t now_ns = 1'000'000'000;
@@ -164,6 +190,50 @@ TEST_F(CycleTest, TellsWhenOdometryIsMissingAndWhenItIsBack) {
   EXPECT_THAT(words(), ElementsAre("odometry_stale"));
   step();
   EXPECT_THAT(words(), ElementsAre("odometry_stale", "odometry_resumed"));
+}
+
+TEST_F(CycleTest, RefusesAPinThatLeavesNoRoomForAPairAndAZoneThatDoesNotExist) {
+  trust(2, 2);
+  EXPECT_EQ(ask(command(Command::Kind::kPin, 2)).error.code, ErrorCode::kNoRoom);  // 4 + 8 of 8
+  EXPECT_EQ(ask(command(Command::Kind::kPin, 7)).error.code, ErrorCode::kNotFound);
+  EXPECT_EQ(cycle.replies().size(), 1u);
+  EXPECT_EQ(cycle.replies()[0].id, last_id);
+}
+
+TEST_F(CycleTest, LoadsTheNextZonesOfAHintedRouteWhileStanding) {
+  trust(2, 2);
+  Command hint = command(Command::Kind::kRouteHint);
+  hint.route_length = 3;
+  hint.route = {0, 1, 2};
+  ask(hint);
+  stand(30);
+  EXPECT_TRUE(memory.resident(1));
+  hint.route_length = 0;
+  ask(hint);
+  stand(2);
+  EXPECT_THAT(words(), Contains("zone_unwanted b"));
+}
+
+TEST_F(CycleTest, EvictsNothingWhileFrozenAndSaysThatItIsBlocked) {
+  trust(2, 2);
+  drive(2.5);  // a and b fill the memory
+  ask(command(Command::Kind::kFreeze));
+  drive(4.0);
+  EXPECT_TRUE(memory.resident(0));
+  EXPECT_TRUE(cycle.state().blocked);
+  ask(command(Command::Kind::kUnfreeze));
+  stand(30);
+  EXPECT_TRUE(memory.resident(2));
+  EXPECT_FALSE(cycle.state().blocked);
+}
+
+TEST_F(CycleTest, GrantsALeaseOnAResidentZoneOnly) {
+  trust(2, 2);
+  const CommandReply granted = ask(command(Command::Kind::kLease, 0));
+  EXPECT_EQ(granted.error.code, ErrorCode::kOk);
+  EXPECT_EQ(granted.lease.zone, 0u);
+  EXPECT_EQ(granted.lease.generation, memory.generation(0));
+  EXPECT_EQ(ask(command(Command::Kind::kLease, 2)).error.code, ErrorCode::kNotFound);
 }
 
 TEST_F(CycleTest, TakesNoMemoryWhileRunning) {

@@ -42,7 +42,9 @@ class Keeper : public testing::Test, public EventSink, public ZoneFiller {
   void step(std::vector<ZoneId> wanted, std::size_t urgent = 16, std::int64_t dt = kSecond) {
     now += dt;
     loader->advance_to(now);
-    keeper->collect(now);
+    std::vector<LoadResult> loads;
+    while (const auto load = loader->poll()) loads.push_back(*load);
+    keeper->collect(now, loads);
     keeper->keep(now, wanted, urgent);
   }
 

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/command.hpp"
+
+namespace zonepack {
+
+const char* to_string(Command::Kind kind) noexcept {
+  switch (kind) {
+    case Command::Kind::kPin:
+      return "pin";
+    case Command::Kind::kUnpin:
+      return "unpin";
+    case Command::Kind::kFreeze:
+      return "freeze";
+    case Command::Kind::kUnfreeze:
+      return "unfreeze";
+    case Command::Kind::kLease:
+      return "lease";
+    case Command::Kind::kRelease:
+      return "release";
+    case Command::Kind::kRouteHint:
+      return "route_hint";
+  }
+  return "unknown";
+}
+
+}  // namespace zonepack

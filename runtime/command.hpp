@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "platform/base/result.hpp"
+#include "runtime/memory/residency.hpp"
+#include "runtime/pack_format/ids.hpp"
+
+namespace zonepack {
+
+// What another program asks of the control thread. A plain value: it is queued, recorded with the
+// cycle that took it, and taken again from the recording.
+struct Command {
+  enum class Kind : std::uint8_t {
+    kPin,        // zone: loaded, and not evicted until unpinned
+    kUnpin,      // zone
+    kFreeze,     // nothing is evicted
+    kUnfreeze,   //
+    kLease,      // zone: a reader holds it, for at most the lease time
+    kRelease,    // lease
+    kRouteHint,  // route: the zones that a planned way leads through, in order; empty ends it
+  };
+  static constexpr std::size_t kMostRoute = 64;
+
+  Kind kind = Kind::kPin;
+  std::uint64_t id = 0;  // comes back in the reply
+  ZoneId zone = kNoZone;
+  Lease lease;
+  std::uint32_t route_length = 0;
+  std::array<ZoneId, kMostRoute> route{};
+};
+
+// The words of the event log and of recordings ("route_hint").
+const char* to_string(Command::Kind kind) noexcept;
+
+// Errors: kNotFound (no such zone; not resident), kNoRoom (pins and the largest pair would not fit
+// together; too many pins).
+struct CommandReply {
+  std::uint64_t id = 0;
+  Error error;
+  Lease lease;  // for kLease
+};
+
+}  // namespace zonepack

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "runtime/memory/slot_pool.hpp"
+#include "runtime/pack_format/ids.hpp"
+
+namespace zonepack {
+
+// Where readers look up which zones are resident and where. Real-time: neither call blocks,
+// allocates or throws.   Threads: called by the control thread.
+class ZoneDirectory {
+ public:
+  virtual ~ZoneDirectory() = default;
+
+  // The zone can be read from here on.
+  virtual void publish(ZoneId zone, std::uint32_t generation, const SlotChain& slots) noexcept = 0;
+
+  // Called before the zone's slots are handed on: what is read from now on is not valid.
+  virtual void withdraw(ZoneId zone) noexcept = 0;
+};
+
+}  // namespace zonepack
