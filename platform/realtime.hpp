@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+#include "platform/base/result.hpp"
+
+namespace zonepack {
+
+// How a thread runs. Errors of the calls below: kIo with errno (EPERM: see `zoned run --check`).
+struct ThreadSettings {
+  const char* name = "";                 // at most 15 characters, as ps and top show it
+  int fifo_priority = 0;                 // SCHED_FIFO 1 to 99; 0: an ordinary thread
+  int cpu = -1;                          // the only processor it runs on; -1: any
+  std::size_t stack_bytes = 256 * 1024;  // touched before `body` runs
+};
+
+// A thread with a stack of its own size, all of it present from the start. Ownership: joins when
+// destroyed, so ask the body to end first.
+class Thread {
+ public:
+  Thread() = default;
+  // Returns once the thread runs with its settings; on error no thread is left.
+  // allow_ordinary: without the privilege for fifo_priority, goes on as an ordinary thread and says
+  // so in is_realtime().
+  static Result<Thread> start(const ThreadSettings& settings, bool allow_ordinary,
+                              std::function<void()> body);
+  Thread(Thread&& other) noexcept;
+  Thread& operator=(Thread&& other) noexcept;
+  ~Thread();
+
+  void join() noexcept;
+  bool joinable() const noexcept { return handle_ != 0; }
+  bool is_realtime() const noexcept { return realtime_; }
+
+ private:
+  unsigned long handle_ = 0;  // pthread_t
+  bool realtime_ = false;
+};
+
+// Locks every page that the process has now, and no later one, into memory.
+Result<void> lock_memory_now() noexcept;
+
+// One heap for all threads, never given back or moved, so that locked pages stay where they are.
+void use_one_heap() noexcept;
+
+// What the kernel counted for the calling thread.
+struct ThreadUsage {
+  std::uint64_t minor_faults = 0;
+  std::uint64_t major_faults = 0;
+  std::uint64_t voluntary_switches = 0;
+  std::uint64_t involuntary_switches = 0;
+};
+ThreadUsage thread_usage() noexcept;
+
+// The most memory the process has had resident (VmHWM); 0 when it cannot be told.
+std::uint64_t process_peak_bytes() noexcept;
+
+}  // namespace zonepack
