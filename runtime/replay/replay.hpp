@@ -10,7 +10,7 @@
 #include "platform/sim/sim_can_bus.hpp"
 #include "runtime/cycle.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/replay/modelled_loader.hpp"
+#include "runtime/replay/driven_map.hpp"
 #include "runtime/replay/run_files.hpp"
 #include "runtime/replay/run_summary.hpp"
 #include "runtime/replay/run_trace.hpp"
@@ -26,12 +26,8 @@ struct ReplayInput {
   std::optional<Pose2> start{};               // nothing: wait for the first fix
   bool start_at_truth = false;
   CycleConfig cycle{};
-  std::int64_t period_ns = 10'000'000;
-  std::uint32_t most_frames = 64;     // taken from the bus in one cycle
-  std::optional<ByteCount> budget{};  // nothing: the smallest that the map allows
-  std::uint64_t max_signatures = 0;
-  std::vector<std::string> pinned{};
-  LoadRates rates{};
+  std::uint32_t most_frames = 64;  // taken from the bus in one cycle
+  MapTerms terms{};
   std::string events_path{};  // empty: none
   bool load_packs = true;     // false: zones are accounted for, no pack is read
 };

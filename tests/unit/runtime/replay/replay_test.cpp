@@ -30,7 +30,7 @@ class Replay : public testing::Test {
     input.truth = &truth;
     input.cycle = testing_support::sample_robot();
     input.load_packs = false;
-    input.budget = 64 * kMiB;
+    input.terms.budget = 64 * kMiB;
     change(input);
     return replay(std::move(input), fault);
   }
@@ -41,7 +41,7 @@ class Replay : public testing::Test {
 };
 
 TEST_F(Replay, LoadsEachZoneOfTheLoopOnceUnderAHundredSignatures) {
-  const auto result = run([](ReplayInput& input) { input.max_signatures = 100; });
+  const auto result = run([](ReplayInput& input) { input.terms.max_signatures = 100; });
   ASSERT_TRUE(result) << fault;
   const RunSummary& s = result->summary;
   EXPECT_EQ(s.signatures_loaded, 82u);  // L1 31 + H1 16 + C2 10 + H2 7 + C3 18
@@ -56,7 +56,7 @@ TEST_F(Replay, LoadsEachZoneOfTheLoopOnceUnderAHundredSignatures) {
 }
 
 TEST_F(Replay, UnloadsAsOldestFirstOverTheTrueZonesUnderFifty) {
-  const auto result = run([](ReplayInput& input) { input.max_signatures = 50; });
+  const auto result = run([](ReplayInput& input) { input.terms.max_signatures = 50; });
   ASSERT_TRUE(result) << fault;
   // L1 31, H1 47, C2 would be 57: L1 out, 26; H2 33; C3 would be 51: H1 out, 35; L1 would be 66: C2
   // and H2 out, 49. Loaded 82 + 31, unloaded 31 + 16 + 10 + 7.
@@ -70,8 +70,8 @@ TEST_F(Replay, KeepsTheSmallestBudgetOnADenseMapAlsoFromSlowStorage) {
   catalog = testing_support::sample_catalog(kData + "/zones.geojson", 6);
   for (const std::uint64_t rate : {50'000'000u, 2'000'000u}) {
     const auto result = run([&](ReplayInput& input) {
-      input.budget.reset();
-      input.rates.storage = rate;
+      input.terms.budget.reset();
+      input.terms.rates.storage = rate;
     });
     ASSERT_TRUE(result) << fault;
     EXPECT_EQ(result->summary.budget_bytes, catalog.smallest.bytes);
@@ -83,17 +83,18 @@ TEST_F(Replay, KeepsTheSmallestBudgetOnADenseMapAlsoFromSlowStorage) {
 }
 
 TEST_F(Replay, GivesTheSameEventsEveryTime) {
-  const auto limit = [](ReplayInput& input) { input.max_signatures = 50; };
+  const auto limit = [](ReplayInput& input) { input.terms.max_signatures = 50; };
   EXPECT_EQ(run(limit)->summary.event_log_hash, run(limit)->summary.event_log_hash);
-  EXPECT_NE(run(limit)->summary.event_log_hash,
-            run([](ReplayInput& input) { input.max_signatures = 60; })->summary.event_log_hash);
+  EXPECT_NE(run(limit)->summary.event_log_hash, run([](ReplayInput& input) {
+                                                  input.terms.max_signatures = 60;
+                                                })->summary.event_log_hash);
 }
 
 TEST_F(Replay, HoldsTheBudgetWithoutCorrectionsAfterTheStart) {
   catalog = testing_support::sample_catalog(kData + "/zones.geojson", 6);
   for (const bool at_truth : {false, true}) {
     const auto result = run([&](ReplayInput& input) {
-      input.budget.reset();
+      input.terms.budget.reset();
       input.corrections.resize(at_truth ? 0 : 2);
       input.start_at_truth = at_truth;
     });
@@ -134,20 +135,20 @@ TEST_F(Replay, NeverLoadsAnythingWithoutAnyPose) {
 }
 
 TEST_F(Replay, RefusesAZoneThatCannotFitByNameWithTheSmallestBudget) {
-  EXPECT_FALSE(run([](ReplayInput& input) { input.budget = 300 * kKiB; }));
+  EXPECT_FALSE(run([](ReplayInput& input) { input.terms.budget = 300 * kKiB; }));
   // L1: 31 * 28000 = 868000 bytes, 53 slots.
   EXPECT_THAT(fault, HasSubstr("zone L1 takes 873440 bytes"));
   EXPECT_THAT(fault, HasSubstr("smallest budget for this map is " +
                                std::to_string(catalog.smallest.bytes)));
-  EXPECT_FALSE(run([](ReplayInput& input) { input.budget = 1000; }));
+  EXPECT_FALSE(run([](ReplayInput& input) { input.terms.budget = 1000; }));
   EXPECT_THAT(fault, HasSubstr("tables and read buffers alone take 100000 bytes"));
-  EXPECT_FALSE(run([](ReplayInput& input) { input.max_signatures = 30; }));
+  EXPECT_FALSE(run([](ReplayInput& input) { input.terms.max_signatures = 30; }));
   EXPECT_THAT(fault, HasSubstr("zone L1 has 31 signatures, over the limit of 30"));
   EXPECT_THAT(fault, HasSubstr("smallest limit for this map is 49 signatures"));  // L1 + C3
 }
 
 TEST_F(Replay, WarnsWhenNeighboursDoNotFitTogetherAndStaysWithinTheLimit) {
-  const auto result = run([](ReplayInput& input) { input.max_signatures = 40; });
+  const auto result = run([](ReplayInput& input) { input.terms.max_signatures = 40; });
   ASSERT_TRUE(result) << fault;
   ASSERT_EQ(result->warnings.size(), 1u);
   EXPECT_THAT(result->warnings[0], HasSubstr("do not fit together in 40 signatures"));
@@ -158,16 +159,16 @@ TEST_F(Replay, WarnsWhenNeighboursDoNotFitTogetherAndStaysWithinTheLimit) {
 
 TEST_F(Replay, KeepsPinnedZonesAndRefusesUnknownOnes) {
   const auto result = run([](ReplayInput& input) {
-    input.max_signatures = 60;
-    input.pinned = {"R13"};
+    input.terms.max_signatures = 60;
+    input.terms.pinned = {"R13"};
   });
   ASSERT_TRUE(result) << fault;
   EXPECT_EQ(result->summary.budget_violations, 0u);
-  EXPECT_FALSE(run([](ReplayInput& input) { input.pinned = {"attic"}; }));
+  EXPECT_FALSE(run([](ReplayInput& input) { input.terms.pinned = {"attic"}; }));
   EXPECT_THAT(fault, HasSubstr("has no zone attic"));
   EXPECT_FALSE(run([](ReplayInput& input) {
-    input.max_signatures = 60;
-    input.pinned = {"H1"};  // 16 + 49 > 60
+    input.terms.max_signatures = 60;
+    input.terms.pinned = {"H1"};  // 16 + 49 > 60
   }));
   EXPECT_THAT(fault, HasSubstr("zone H1 does not fit beside the largest pair"));
 }
@@ -180,7 +181,7 @@ TEST_F(Replay, TracksWithoutTruthToo) {
 }
 
 TEST_F(Replay, RecordsTheRunForDrawing) {
-  const auto result = run([](ReplayInput& input) { input.max_signatures = 50; });
+  const auto result = run([](ReplayInput& input) { input.terms.max_signatures = 50; });
   ASSERT_TRUE(result) << fault;
   const RunTrace& trace = result->trace;
   EXPECT_EQ(trace.zones.size(), 24u);

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/map/catalog.hpp"
+#include "runtime/memory/residency.hpp"
+#include "runtime/replay/modelled_loader.hpp"
+#include "runtime/zones/zone_graph.hpp"
+
+namespace zonepack {
+
+// How a map is to be held.
+struct MapTerms {
+  std::optional<ByteCount> budget{};  // nothing: see limits_for()
+  std::uint64_t max_signatures = 0;
+  std::vector<std::string> pinned{};  // names
+  LoadRates rates{};
+  std::int64_t period_ns = 10'000'000;
+  std::int64_t lease_ns = 0;
+};
+
+// A map in the shape in which the cycle takes it, with the limits to hold. Immutable; the catalog
+// must outlive it.
+struct DrivenMap {
+  const Catalog& catalog;
+  std::vector<ZoneId> pinned;
+  ResidencyLimits limits;
+  ZoneGraph graph;
+  std::vector<ZoneNeed> needs;
+  std::vector<LoadWork> work;
+  std::vector<float> load_s;
+  std::uint32_t slots;                 // to reserve: no more than all zones together fill
+  std::optional<std::string> warning;  // a complete message
+
+  // Null when the map cannot be held on these terms; `fault` says why in a complete message.
+  static std::unique_ptr<DrivenMap> make(const Catalog& catalog, const MapTerms& terms,
+                                         std::string& fault);
+
+  // Pins what is to be pinned in a new Residency; false with a complete message in `fault`.
+  bool pin(Residency& memory, std::string& fault) const;
+};
+
+}  // namespace zonepack
