@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <utility>
+
+#include "platform/base/result.hpp"
+
+namespace zonepack {
+
+// Owns a file descriptor and closes it; -1 for none.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int fd) noexcept : fd_(fd) {}
+  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept;
+  ~Descriptor() { close(); }
+
+  int get() const noexcept { return fd_; }
+  bool is_open() const noexcept { return fd_ >= 0; }
+  int release() noexcept { return std::exchange(fd_, -1); }
+  void close() noexcept;
+
+  // Another one for the same open file, locks included. kIo with errno.
+  Result<Descriptor> share() const noexcept;
+
+ private:
+  int fd_ = -1;
+};
+
+}  // namespace zonepack

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "platform/descriptor.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+namespace zonepack {
+
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+  if (this != &other) {
+    close();
+    fd_ = other.release();
+  }
+  return *this;
+}
+
+void Descriptor::close() noexcept {
+  if (fd_ >= 0) ::close(std::exchange(fd_, -1));
+}
+
+Result<Descriptor> Descriptor::share() const noexcept {
+  Descriptor copy(::fcntl(fd_, F_DUPFD_CLOEXEC, 0));
+  if (!copy.is_open()) return {ErrorCode::kIo, errno};
+  return copy;
+}
+
+}  // namespace zonepack

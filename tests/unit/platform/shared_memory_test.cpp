@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "platform/shared_memory.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <functional>
+
+#include "platform/realtime.hpp"
+
+namespace zonepack {
+namespace {
+
+constexpr ByteCount kBytes = 64 * kKiB;
+
+SharedMemory make() {
+  auto memory = SharedMemory::create("zonepack-test", kBytes);
+  EXPECT_TRUE(memory.ok());
+  return std::move(*memory);
+}
+
+// What a child process that runs `body` exits with.
+int in_child(const std::function<int()>& body) {
+  const pid_t child = fork();
+  if (child == 0) _exit(body());
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+TEST(SharedMemory, ShowsReadersWhatTheWriterWrites) {
+  SharedMemory memory = make();
+  auto reader = SharedMemory::map_read_only(memory.reader_file().value());
+  ASSERT_TRUE(reader.ok());
+  ASSERT_EQ(reader->read_only().size(), kBytes);
+  memory.bytes()[kBytes - 1] = std::byte{42};
+  EXPECT_EQ(reader->read_only()[kBytes - 1], std::byte{42});
+}
+
+TEST(SharedMemory, CannotBeMappedWritableByAReader) {
+  const SharedMemory memory = make();
+  const auto file = memory.reader_file();
+  ASSERT_TRUE(file.ok());
+  errno = 0;
+  EXPECT_EQ(mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_SHARED, file->get(), 0), MAP_FAILED);
+  EXPECT_EQ(errno, EACCES);
+  void* const mapped = mmap(nullptr, kBytes, PROT_READ, MAP_SHARED, file->get(), 0);
+  ASSERT_NE(mapped, MAP_FAILED);
+  EXPECT_NE(mprotect(mapped, kBytes, PROT_READ | PROT_WRITE), 0);
+  EXPECT_EQ(errno, EACCES);
+  munmap(mapped, kBytes);
+  EXPECT_LT(write(file->get(), "x", 1), 0);
+}
+
+TEST(SharedMemory, CannotBeOpenedAnewToWriteByAnotherUser) {
+  if (getuid() != 0) GTEST_SKIP() << "changing the user takes root";
+  const SharedMemory memory = make();
+  const auto file = memory.reader_file();
+  const std::string path = "/proc/self/fd/" + std::to_string(file->get());
+  EXPECT_EQ(in_child([&] {
+              if (setgid(65534) != 0 || setuid(65534) != 0) return 1;
+              if (open(path.c_str(), O_RDWR) >= 0) return 2;
+              if (fchmod(file->get(), 0600) == 0) return 3;
+              return errno == EPERM ? 0 : 4;
+            }),
+            0);
+}
+
+TEST(SharedMemory, NeverChangesItsSize) {
+  const SharedMemory memory = make();
+  EXPECT_NE(ftruncate(memory.file().get(), 0), 0);
+  EXPECT_EQ(errno, EPERM);
+  EXPECT_NE(ftruncate(memory.file().get(), 2 * kBytes), 0);
+}
+
+TEST(SharedMemory, HasAllItsPagesFromTheStart) {
+  SharedMemory memory = make();
+  const auto span = memory.bytes();
+  const ThreadUsage before = thread_usage();
+  for (std::size_t at = 0; at < span.size(); at += 4096) span[at] = std::byte{1};
+  EXPECT_EQ(thread_usage().minor_faults, before.minor_faults);
+}
+
+TEST(SharedMemory, IsTakenOverWithItsContentByTheNextWriter) {
+  SharedMemory memory = make();
+  memory.bytes()[7] = std::byte{9};
+  const auto reader = SharedMemory::map_read_only(memory.reader_file().value());
+  auto kept = memory.file().share();
+  { const SharedMemory ended(std::move(memory)); }
+  auto next = SharedMemory::adopt(std::move(*kept), kBytes);
+  ASSERT_TRUE(next.ok());
+  EXPECT_EQ(next->bytes()[7], std::byte{9});
+  next->bytes()[7] = std::byte{10};
+  EXPECT_EQ(reader->read_only()[7], std::byte{10});
+}
+
+TEST(SharedMemory, RefusesMemoryOfAnotherSizeAndFilesThatCanShrink) {
+  const SharedMemory memory = make();
+  EXPECT_EQ(SharedMemory::adopt(memory.file().share().value(), kBytes - 1).error(),
+            (Error{ErrorCode::kMismatch, kBytes}));
+  Descriptor loose(memfd_create("loose", MFD_CLOEXEC));
+  ASSERT_EQ(ftruncate(loose.get(), kBytes), 0);
+  EXPECT_EQ(SharedMemory::map_read_only(std::move(loose)).error().code, ErrorCode::kMismatch);
+}
+
+}  // namespace
+}  // namespace zonepack
