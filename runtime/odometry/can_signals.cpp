@@ -29,6 +29,14 @@ double value_of(const CanSignal& signal, std::uint64_t bits, std::int64_t raw) n
   return static_cast<double>(bits);
 }
 
+bool selects(const CanSignal::Multiplexer& multiplexer, std::uint64_t value) noexcept {
+  for (std::size_t i = 0; i < multiplexer.ranges; ++i) {
+    const CanSignal::Values& values = multiplexer.values[i];
+    if (values.least <= value && value <= values.most) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::optional<std::uint8_t> bytes_needed(const SignalBits& bits) noexcept {
@@ -42,36 +50,61 @@ std::optional<std::uint8_t> bytes_needed(const SignalBits& bits) noexcept {
 
 bool is_valid(const CanSignal& signal) noexcept {
   if (!bytes_needed(signal.bits)) return false;
-  if (signal.multiplex && !bytes_needed(signal.multiplex->bits)) return false;
+  if (signal.levels > CanSignal::kMostLevels) return false;
+  for (std::size_t level = 0; level < signal.levels; ++level) {
+    const CanSignal::Multiplexer& multiplexer = signal.multiplexers[level];
+    if (!bytes_needed(multiplexer.bits)) return false;
+    if (multiplexer.ranges < 1 || multiplexer.ranges > multiplexer.values.size()) return false;
+  }
   if (signal.type == SignalType::kFloat && signal.bits.length != 32) return false;
   if (signal.type == SignalType::kDouble && signal.bits.length != 64) return false;
   if (signal.id > (signal.extended ? 0x1FFFFFFFu : 0x7FFu)) return false;
   return finite(signal.factor) && signal.factor != 0 && finite(signal.offset);
 }
 
+bool add_multiplexer(CanSignal& signal, const SignalBits& bits, CanSignal::Values values) noexcept {
+  if (signal.levels >= CanSignal::kMostLevels) return false;
+  signal.multiplexers[signal.levels++] = {bits, {values}, 1};
+  return true;
+}
+
+bool add_values(CanSignal& signal, CanSignal::Values values) noexcept {
+  if (signal.levels == 0) return false;
+  CanSignal::Multiplexer& innermost = signal.multiplexers[signal.levels - 1u];
+  if (innermost.ranges >= innermost.values.size()) return false;
+  innermost.values[innermost.ranges++] = values;
+  return true;
+}
+
 std::uint64_t extract_bits(const SignalBits& bits, const CanFrame& frame) noexcept {
+  const bool little = bits.order == ByteOrder::kLittle;
+  const unsigned skipped = little ? bits.start % 8u : 7 - bits.start % 8u;  // of the first byte
+  const unsigned used = skipped + bits.length;
+  const std::uint8_t* const data = &frame.data[bits.start / 8u];
+  const unsigned whole = used > 64 ? 8 : (used + 7) / 8;
   std::uint64_t value = 0;
-  unsigned bit = bits.start;
-  for (unsigned i = 0; i < bits.length; ++i) {
-    const std::uint64_t one = (frame.data[bit / 8] >> (bit % 8)) & 1u;
-    if (bits.order == ByteOrder::kLittle) {
-      value |= one << i;
-      ++bit;
+  if (little) {
+    for (unsigned i = 0; i < whole; ++i) value |= std::uint64_t{data[i]} << (8 * i);
+    value >>= skipped;
+    if (used > 64) value |= std::uint64_t{data[8]} << (64 - skipped);
+  } else {
+    for (unsigned i = 0; i < whole; ++i) value = value << 8 | data[i];
+    if (used > 64) {
+      value = value << (used - 64) | data[8] >> (72 - used);
     } else {
-      value = value << 1 | one;
-      bit = bit % 8 == 0 ? bit + 15 : bit - 1;
+      value >>= 8 * whole - used;
     }
   }
-  return value;
+  return value & (~std::uint64_t{0} >> (64 - bits.length));
 }
 
 SignalReading read_signal(const CanSignal& signal, const CanFrame& frame) noexcept {
   if (frame.error || frame.id != signal.id || frame.extended != signal.extended) return {};
   if (frame.rtr) return {Status::kRefused};
-  if (signal.multiplex) {
-    const SignalBits& selector = signal.multiplex->bits;
-    if (frame.len < *bytes_needed(selector)) return {Status::kRefused};
-    if (extract_bits(selector, frame) != signal.multiplex->value) return {};
+  for (std::size_t level = 0; level < signal.levels; ++level) {
+    const CanSignal::Multiplexer& multiplexer = signal.multiplexers[level];
+    if (frame.len < *bytes_needed(multiplexer.bits)) return {Status::kRefused};
+    if (!selects(multiplexer, extract_bits(multiplexer.bits, frame))) return {};
   }
   if (frame.len < *bytes_needed(signal.bits)) return {Status::kRefused};
   const std::uint64_t bits = extract_bits(signal.bits, frame);

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
 #include "platform/can_bus.hpp"
 
 // Numbers out of CAN frames, as a DBC file describes them, without its text.
-// Real-time: no allocation, at most 64 steps per value.
+// Real-time: no allocation; a value takes at most 9 bytes, one after the other, and so does each of
+// its multiplexers, at most 3.
 namespace zonepack {
 
 enum class ByteOrder : std::uint8_t { kLittle /* Intel */, kBig /* Motorola */ };
@@ -28,21 +30,35 @@ struct SignalBits {
 std::optional<std::uint8_t> bytes_needed(const SignalBits& bits) noexcept;
 
 struct CanSignal {
-  // Present only in frames in which other bits have one value.
-  struct Multiplex {
-    SignalBits bits;
-    std::uint64_t value = 0;
-    friend bool operator==(const Multiplex&, const Multiplex&) = default;
+  struct Values {
+    std::uint64_t least = 0;
+    std::uint64_t most = 0;
+    friend bool operator==(const Values&, const Values&) = default;
   };
+  // Present only in frames in which other bits, read unsigned, have one of some values.
+  struct Multiplexer {
+    static constexpr std::size_t kMostRanges = 8;
+    SignalBits bits;
+    std::array<Values, kMostRanges> values{};
+    std::uint8_t ranges = 0;  // of values, that count
+    friend bool operator==(const Multiplexer&, const Multiplexer&) = default;
+  };
+  static constexpr std::size_t kMostLevels = 3;
   std::uint32_t id = 0;
   bool extended = false;
   SignalBits bits;
   SignalType type = SignalType::kUnsigned;
   double factor = 1;  // value = raw * factor + offset
   double offset = 0;
-  std::optional<Multiplex> multiplex;
+  std::array<Multiplexer, kMostLevels> multiplexers{};  // all must select it, outermost first
+  std::uint8_t levels = 0;                              // of multiplexers, that count
   friend bool operator==(const CanSignal&, const CanSignal&) = default;
 };
+
+// Adds a multiplexer inside those there are, with one range of values. False: no room.
+bool add_multiplexer(CanSignal& signal, const SignalBits& bits, CanSignal::Values values) noexcept;
+// Adds a range to the innermost one. False: no room, or no multiplexer.
+bool add_values(CanSignal& signal, CanSignal::Values values) noexcept;
 
 // Length 1 to 64 (32 of a float, 64 of a double) inside 64 bytes, id in its range, finite factor
 // other than zero, finite offset.

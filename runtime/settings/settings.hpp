@@ -42,8 +42,9 @@ struct LoadingSettings {
 };
 
 struct CanSettings {
-  std::string interface;  // empty: any
-  std::map<std::string, CanSignal> signals;
+  std::string interface;                     // empty: any
+  std::string dbc;                           // as map.path; empty: not given
+  std::map<std::string, CanSignal> signals;  // and those of the DBC file that odometry names
 };
 
 enum class WheelUnit : std::uint8_t { kMetres, kRadians, kTurns };
@@ -82,10 +83,11 @@ struct LoadedSettings {
   bool ok() const noexcept { return faults.empty(); }
 };
 
-// Reads a settings file. Never throws.
+// Reads a settings file, and the DBC file that it names. Never throws.
 LoadedSettings load_settings(const std::string& path);
 
-// The same for a text; `path` stands in messages, and map.path is relative to its folder.
+// The same for a text; `path` stands in messages, and map.path and can.dbc are relative to its
+// folder.
 LoadedSettings parse_settings(const std::string& text, const std::string& path);
 
 // Every section and key with type, range, unit, default and meaning, as Markdown:

@@ -48,7 +48,9 @@ struct Kind {
   static std::string shown(bool value) { return value ? "true" : "false"; }
   static std::string shown(const std::string& value) { return value.empty() ? "-" : value; }
   static std::string shown(const std::vector<std::string>&) { return "[]"; }
-  static std::string shown(const std::optional<ByteCount>&) { return "the map's smallest; the whole map beside max_signatures"; }
+  static std::string shown(const std::optional<ByteCount>&) {
+    return "the map's smallest; the whole map beside max_signatures";
+  }
   static std::string shown(const PayloadChoice& value) {
     return "[" + payload_words(value.mask) + "]";
   }
@@ -88,8 +90,8 @@ std::string settings_reference() {
          "here, stands twice, has the wrong type or is out of range is refused with file, line and "
          "what is\n"
          "allowed, all faults at once. Keys that are absent have their default. A relative "
-         "map.path is\n"
-         "relative to the settings file.\n" +
+         "map.path or can.dbc\n"
+         "is relative to the settings file.\n" +
          head("map") + rows(map_fields()) + head("memory") + rows(memory_fields()) +
          head("loading") + rows(loading_fields()) + head("can") + rows(can_fields()) +
          "| signals | signals by name | none | what frames hold; see below |\n" +

@@ -39,6 +39,8 @@ const Fields<CanSettings>& can_fields() {
   using S = CanSettings;
   static const Fields<S> fields = {
       {"interface", &S::interface, 0, 0, "", "bus whose frames are read, empty for any"},
+      {"dbc", &S::dbc, 0, 0, "",
+       "DBC file; its signals are named MESSAGE.SIGNAL, beside those of can.signals"},
   };
   return fields;
 }
@@ -75,7 +77,8 @@ const Fields<OdometrySettings>& odometry_fields() {
       {"unit", &S::unit, 0, 0, "", "of wheel signals (per second, for speeds)"},
       {"wheel_radius", &S::wheel_radius_m, 0.001, 10, "m", "for radians and turns"},
       {"scale", &S::scale, 0.5, 2, "", "true over reported distance, from a calibration run"},
-      {"left", &S::left, 0, 0, "", "signal of the left wheel, in can.signals"},
+      {"left", &S::left, 0, 0, "",
+       "signal of the left wheel: a name of can.signals, or MESSAGE.SIGNAL of can.dbc"},
       {"right", &S::right, 0, 0, "", "signal of the right wheel"},
       {"forward", &S::forward, 0, 0, "", "twist: signal of the forward speed, m/s"},
       {"yaw_rate", &S::yaw_rate, 0, 0, "", "twist: signal of the yaw rate, rad/s"},
@@ -93,7 +96,10 @@ const Fields<WheelOdometrySettings>& wheel_fields() {
       {"max_acceleration", &S::max_acceleration_m_s2, 0.1, 1000, "m/s2",
        "of a wheel from sample to sample; more is refused"},
       {"gap", &S::gap_s, 0.01, 60, "s", "a longer pause between samples is a gap"},
-      {"timeout", &S::timeout_s, 0.01, 60, "s", "without samples for so long, uncertainty grows"},
+      {"timeout", &S::timeout_s, 0.01, 60, "s",
+       "without samples for so long, uncertainty grows; not given and can.dbc tells "
+       "GenMsgCycleTime: "
+       "3 times the longest of the messages read, at least two cycles"},
       {"sigma_forward_per_sqrt_m", &S::sigma_forward_per_sqrt_m, 0, 10, "m", "noise of 1 m: along"},
       {"sigma_sideways_per_sqrt_m", &S::sigma_sideways_per_sqrt_m, 0, 10, "m",
        "noise of 1 m: across (slip)"},

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "runtime/settings/nearest_word.hpp"
+
 namespace zonepack {
 namespace {
 
@@ -48,22 +50,6 @@ std::string parse_word(const YAML::Node& node, Enum& value) {
     words += (number++ == 0 ? "" : ", ") + std::string(word);
   }
   return shown(node) + " is not one of: " + words;
-}
-
-// Insertions, deletions and replacements that lead from one word to the other.
-std::size_t edits(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = above;
-    }
-  }
-  return row[b.size()];
 }
 
 constexpr std::uint32_t kFirstChoice = 1;  // kind 0, the core, is always loaded
@@ -121,23 +107,23 @@ YAML::Node YamlSection::take(std::string_view key) {
   return YAML::Node(YAML::NodeType::Undefined);
 }
 
+bool YamlSection::has(std::string_view key) const noexcept {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [&](const auto& entry) { return entry.first == key; });
+}
+
+YAML::Mark YamlSection::mark_of(std::string_view key) const {
+  for (const auto& [word, node] : entries_) {
+    if (word == key) return node.Mark();
+  }
+  return mark_;
+}
+
 void YamlSection::finish() {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (asked_[i]) continue;
     const std::string& key = entries_[i].first;
-    const std::string* nearest = nullptr;
-    std::size_t least = key.size() / 3 + 2;
-    std::string all;
-    for (const std::string& word : known_) {
-      all += (all.empty() ? "" : ", ") + word;
-      if (const std::size_t distance = edits(key, word); distance < least) {
-        least = distance;
-        nearest = &word;
-      }
-    }
-    std::string text = "unknown key";
-    if (nearest != nullptr) text += "; did you mean " + quoted(*nearest) + "?";
-    faults_.add(key_marks_[i], path_of(key), text + (nearest ? " Known: " : "; known: ") + all);
+    faults_.add(key_marks_[i], path_of(key), "unknown key" + known_words_text(key, known_));
   }
 }
 

@@ -20,6 +20,9 @@ class FaultList {
   // "file:line: path: text"; without a path "file:line: text", without a place "file: text".
   void add(const YAML::Mark& mark, const std::string& path, const std::string& text);
 
+  // A complete message about another file.
+  void add_complete(const std::string& text) { faults_.push_back(text); }
+
   std::vector<std::string> take() { return std::move(faults_); }
   std::size_t size() const noexcept { return faults_.size(); }
 
@@ -38,6 +41,12 @@ class YamlSection {
 
   // The value of a key, or an undefined node. The key counts as known from here on.
   YAML::Node take(std::string_view key);
+
+  // Whether the key stands there, with any value. It does not count as known.
+  bool has(std::string_view key) const noexcept;
+
+  // The place of a key's value; the section's when it is not there.
+  YAML::Mark mark_of(std::string_view key) const;
 
   // Reads every field that is there into `into`; the others keep their values.
   template <typename Section>

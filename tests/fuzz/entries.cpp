@@ -2,6 +2,7 @@
 #include "tests/fuzz/entries.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
@@ -15,6 +16,7 @@
 #include "runtime/pack_format/pack_file.hpp"
 #include "runtime/pack_format/struct_alignment.hpp"
 #include "runtime/pack_format/zone_view.hpp"
+#include "runtime/settings/dbc_file.hpp"
 #include "tests/support/memory_folder.hpp"
 
 namespace zonepack::fuzz {
@@ -223,6 +225,28 @@ bool read_manifest(ByteSpan bytes) {
   folder.files[std::string(kManifestName)] = {file.span().begin(), file.span().end()};
   sink = packer::verify_map(folder).problems.size();
   return true;
+}
+
+bool read_dbc(ByteSpan bytes) {
+  Aligned file(bytes);
+  const LoadedDbc loaded =
+      parse_dbc({reinterpret_cast<const char*>(file.data()), bytes.size()}, "a.dbc");
+  CanFrame frame;
+  frame.len = 64;
+  for (const DbcMessage& message : loaded.file.messages()) {
+    frame.id = message.id;
+    frame.extended = message.extended;
+    for (const DbcSignal& signal : message.signals) {
+      std::string fault;
+      const auto found = loaded.file.find(message.name + "." + signal.name, fault);
+      if (found) {
+        sink = static_cast<std::uint64_t>(read_signal(found->signal, frame).raw);
+      } else if (fault.empty()) {
+        std::abort();
+      }
+    }
+  }
+  return loaded.ok();
 }
 
 }  // namespace zonepack::fuzz

@@ -19,5 +19,7 @@ bool read_chunk(ByteSpan bytes);
 bool read_block(ByteSpan bytes);
 // A manifest's FlatBuffer, in a right frame.
 bool read_manifest(ByteSpan bytes);
+// A DBC file. Every signal that can be asked for is asked for.
+bool read_dbc(ByteSpan bytes);
 
 }  // namespace zonepack::fuzz

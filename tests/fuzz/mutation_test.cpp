@@ -37,6 +37,8 @@ TEST(Mutations, OfManifestsDoNotLeadReadersAstray) {
   mutate(seeds().manifests, read_manifest, 15000);
 }
 
+TEST(Mutations, OfDbcFilesDoNotLeadReadersAstray) { mutate(seeds().dbcs, read_dbc, 20000); }
+
 TEST(Mutations, OfWholePacksAreAllFound) {
   const std::vector<Bytes>& packs = seeds().packs;
   Mutator mutator(7);

@@ -2,6 +2,11 @@
 #include "tests/fuzz/seeds.hpp"
 
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <string_view>
 
 #include "runtime/pack_format/pack_file.hpp"
 #include "tests/support/small_map.hpp"
@@ -51,6 +56,27 @@ void add_pack(Seeds& seeds, const Bytes& pack) {
   }
 }
 
+// The files of config/, and one with what they do not have.
+void add_dbcs(Seeds& seeds) {
+  const auto add = [&seeds](std::string_view text) {
+    const auto bytes = std::as_bytes(std::span(text));
+    seeds.dbcs.emplace_back(bytes.begin(), bytes.end());
+  };
+  for (const auto& entry : std::filesystem::directory_iterator(ZONEPACK_SOURCE_DIR "/config")) {
+    if (entry.path().extension() != ".dbc") continue;
+    std::ifstream file(entry.path(), std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    add(text.str());
+  }
+  add("NS_ : CM_ BA_\nBS_: 1:2,3\nBU_: N\nVAL_TABLE_ T 1 \"a;\" ;\nBO_ 2147483749 M: 8 N\n"
+      " SG_ A M : 0|8@1+ (1,0) [0|0] \"\" N\n SG_ B m1M : 8|8@1- (0.5,-1e1) [0|9] \"m\" N,O\n"
+      " SG_ C m3 : 23|32@0- (1,0) [0|0] \"\" N\nCM_ SG_ 2147483749 A \"x\ny\";\n"
+      "BA_DEF_DEF_ \"GenMsgCycleTime\" 10;\nBA_ \"GenMsgCycleTime\" BO_ 2147483749 20;\n"
+      "SIG_VALTYPE_ 2147483749 C : 1;\nSG_MUL_VAL_ 2147483749 B A 1-1;\n"
+      "SG_MUL_VAL_ 2147483749 C B 3-4, 6-7;\n");
+}
+
 Seeds make_seeds() {
   Seeds seeds;
   const auto add = [&](const test_support::SmallMap& map) {
@@ -81,6 +107,7 @@ Seeds make_seeds() {
     recipe.label = "shelf";
   }
   add(test_support::SmallMap(many, {}));
+  add_dbcs(seeds);
   return seeds;
 }
 

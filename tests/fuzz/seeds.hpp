@@ -7,9 +7,9 @@
 
 namespace zonepack::fuzz {
 
-// Inputs that the entries accept, taken from small maps of every payload kind.
+// Inputs that the entries accept, taken from small maps of every payload kind, and DBC files.
 struct Seeds {
-  std::vector<packer::Bytes> packs, indexes, chunks, blocks, manifests;
+  std::vector<packer::Bytes> packs, indexes, chunks, blocks, manifests, dbcs;
 };
 
 const Seeds& seeds();

@@ -24,5 +24,6 @@ int main(int argc, char** argv) {
   write("chunk", seeds.chunks);
   write("block", seeds.blocks);
   write("manifest", seeds.manifests);
+  write("dbc", seeds.dbcs);
   return 0;
 }

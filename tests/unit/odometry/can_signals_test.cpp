@@ -90,11 +90,33 @@ TEST(CanSignals, LooksAtItsOwnIdOnly) {
 
 TEST(CanSignals, IsThereOnlyWhenTheMultiplexerSelectsIt) {
   CanSignal s = signal(8, 8, ByteOrder::kLittle);
-  s.multiplex = CanSignal::Multiplex{{0, 4, ByteOrder::kLittle}, 5};
+  ASSERT_TRUE(add_multiplexer(s, {0, 4, ByteOrder::kLittle}, {5, 5}));
   EXPECT_EQ(read_signal(s, frame(0x311, {0xF5, 7})).raw, 7);
   EXPECT_EQ(read_signal(s, frame(0x311, {0xF6, 7})).status, Status::kOther);
   EXPECT_EQ(read_signal(s, frame(0x311, {0xF5})).status, Status::kRefused);
   EXPECT_EQ(read_signal(s, frame(0x311, {})).status, Status::kRefused);
+}
+
+TEST(CanSignals, IsThereWhenEveryMultiplexerHasOneOfItsValues) {
+  CanSignal s = signal(16, 8, ByteOrder::kLittle);
+  EXPECT_FALSE(add_values(s, {1, 1}));
+  ASSERT_TRUE(add_multiplexer(s, {0, 8, ByteOrder::kLittle}, {1, 1}));
+  ASSERT_TRUE(add_multiplexer(s, {15, 8, ByteOrder::kBig}, {2, 3}));
+  ASSERT_TRUE(add_values(s, {7, 7}));
+  for (int inner = 0; inner < 10; ++inner) {
+    const bool there = inner == 2 || inner == 3 || inner == 7;
+    EXPECT_EQ(read_signal(s, frame(0x311, {1, inner, 9})).status,
+              there ? Status::kValue : Status::kOther)
+        << inner;
+    EXPECT_EQ(read_signal(s, frame(0x311, {2, inner, 9})).status, Status::kOther);
+  }
+  EXPECT_TRUE(add_multiplexer(s, {0, 1, ByteOrder::kLittle}, {1, 1}));
+  EXPECT_FALSE(add_multiplexer(s, {0, 1, ByteOrder::kLittle}, {1, 1}));
+  EXPECT_TRUE(is_valid(s));
+  for (int i = 1; i < 8; ++i) EXPECT_TRUE(add_values(s, {0, 0}));
+  EXPECT_FALSE(add_values(s, {0, 0}));
+  s.multiplexers[1].bits.length = 0;
+  EXPECT_FALSE(is_valid(s));
 }
 
 TEST(CanSignals, KnowsTheBytesASignalNeeds) {

@@ -196,7 +196,9 @@ TEST(Settings, ReadsAMultiplexedExtendedFloat) {
   const CanSignal& signal = loaded.settings.can.signals.at("temperature");
   EXPECT_TRUE(signal.extended);
   EXPECT_EQ(signal.type, SignalType::kFloat);
-  EXPECT_EQ(signal.multiplex, (CanSignal::Multiplex{{0, 8, ByteOrder::kLittle}, 5}));
+  EXPECT_EQ(signal.levels, 1);
+  EXPECT_EQ(signal.multiplexers[0],
+            (CanSignal::Multiplexer{{0, 8, ByteOrder::kLittle}, {CanSignal::Values{5, 5}}, 1}));
 }
 
 TEST(Settings, WhatIsNotAYamlMappingIsAFaultNotACrash) {

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/odometry/can_signals.hpp"
+
+// DBC files: what frames of a CAN bus hold, by name of message and signal. Read at start; what the
+// control thread decodes with is a plain CanSignal.
+// Source: Vector Informatik, "DBC File Format Documentation", version 01/2007; extended
+// multiplexing as in Vector's application note AN-ION-1-0521.
+namespace zonepack {
+
+struct DbcSignal {
+  static constexpr std::int32_t kNone = -1;
+
+  std::string name;
+  std::string unit;
+  SignalBits bits;  // any numbers: judged when the signal is asked for
+  SignalType type = SignalType::kUnsigned;
+  double factor = 1;
+  double offset = 0;
+  double least = 0;  // of the value; both 0: not told. Not enforced
+  double most = 0;
+  bool multiplexer = false;               // M, or m1M
+  bool multiplexed = false;               // m1
+  std::int32_t selected_by = kNone;       // index in the message, as SG_MUL_VAL_ tells
+  std::vector<CanSignal::Values> values;  // of its multiplexer that select it
+  std::uint32_t line = 0;
+  std::uint32_t column = 0;
+};
+
+struct DbcMessage {
+  std::string name;
+  std::uint32_t id = 0;  // without the flag
+  bool extended = false;
+  std::uint32_t bytes = 0;
+  std::optional<double> cycle_s;  // GenMsgCycleTime, over 0
+  std::vector<DbcSignal> signals;
+  std::uint32_t line = 0;
+};
+
+// A signal ready to be read.
+struct DbcFound {
+  CanSignal signal;
+  std::optional<double> cycle_s;  // of its message
+  std::string unit;
+};
+
+class DbcFile {
+ public:
+  DbcFile() = default;
+  DbcFile(std::string path, std::vector<DbcMessage> messages);
+
+  const std::vector<DbcMessage>& messages() const noexcept { return messages_; }
+
+  // The signal of "Message.Signal". Nothing when there is none or when it cannot be read (does not
+  // fit its message, a float that is not 32 bits long ...); `fault` tells, with file and line.
+  std::optional<DbcFound> find(std::string_view name, std::string& fault) const;
+
+ private:
+  const DbcMessage* find_message(std::string_view name, std::string& fault) const;
+  const DbcSignal* find_signal(const DbcMessage& message, std::string_view name,
+                               std::string& fault) const;
+  static std::optional<std::string> select(const DbcMessage& message, const DbcSignal& signal,
+                                           CanSignal& result);
+
+  std::string path_;
+  std::vector<DbcMessage> messages_;
+};
+
+struct LoadedDbc {
+  static constexpr std::size_t kMostFaults = 20;
+
+  DbcFile file;                     // meaningful without faults only
+  std::vector<std::string> faults;  // "file:line:column: expected ..., found ..."
+  bool ok() const noexcept { return faults.empty(); }
+};
+
+// Reads a DBC file. Statements that tell nothing about reading signals are skipped. Memory is
+// bounded: at most kLargestDbc bytes, kMostDbcSignals signals. Never throws but for want of memory.
+inline constexpr std::size_t kLargestDbc = std::size_t{4} << 20;
+inline constexpr std::size_t kMostDbcSignals = 65536;
+LoadedDbc load_dbc(const std::string& path);
+
+// The same for a text; `path` stands in messages.
+LoadedDbc parse_dbc(std::string_view text, const std::string& path);
+
+}  // namespace zonepack

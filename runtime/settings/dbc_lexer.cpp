@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/settings/dbc_lexer.hpp"
+
+#include <charconv>
+
+namespace zonepack {
+namespace {
+
+using Kind = DbcToken::Kind;
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
+bool is_letter(char c) noexcept {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+bool is_exponent(char c) noexcept { return c == 'e' || c == 'E'; }
+
+// Bytes of the number or word that begins the text; 0 when a sign does.
+std::size_t run_length(std::string_view text) noexcept {
+  const bool number = is_digit(text[0]) || (text[0] == '.' && text.size() > 1 && is_digit(text[1]));
+  if (!number && !is_letter(text[0])) return 0;
+  std::size_t length = 0;
+  for (; length < text.size(); ++length) {
+    const char c = text[length];
+    if (is_digit(c) || is_letter(c) || (number && c == '.')) continue;
+    const bool exponent_sign = number && (c == '+' || c == '-') && is_exponent(text[length - 1]) &&
+                               length + 1 < text.size() && is_digit(text[length + 1]);
+    if (!exponent_sign) break;
+  }
+  return length;
+}
+
+bool read_number(std::string_view text, double& number) noexcept {
+  if (is_letter(text[0])) return false;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+}  // namespace
+
+DbcLexer::DbcLexer(std::string_view bytes) noexcept : bytes_(bytes) {
+  if (bytes_.starts_with(kByteOrderMark)) bytes_.remove_prefix(kByteOrderMark.size());
+}
+
+void DbcLexer::advance() noexcept {
+  if (bytes_[at_++] == '\n') {
+    ++line_;
+    column_ = 1;
+    first_on_line_ = true;
+  } else {
+    ++column_;
+  }
+}
+
+void DbcLexer::skip_blanks() noexcept {
+  while (!at_end() && (bytes_[at_] == ' ' || (bytes_[at_] >= '\t' && bytes_[at_] <= '\r'))) {
+    advance();
+  }
+}
+
+DbcToken DbcLexer::next() noexcept {
+  skip_blanks();
+  DbcToken token;
+  token.line = line_;
+  token.column = column_;
+  token.first_on_line = first_on_line_;
+  if (at_end()) return token;
+  first_on_line_ = false;
+  if (bytes_[at_] == '"') {
+    advance();
+    const std::size_t begin = at_;
+    while (!at_end() && bytes_[at_] != '"') {
+      const bool escaped = bytes_[at_] == '\\' && at_ + 1 < bytes_.size() && bytes_[at_ + 1] == '"';
+      advance();
+      if (escaped) advance();
+    }
+    token.kind = at_end() ? Kind::kOpenText : Kind::kText;
+    token.text = bytes_.substr(begin, at_ - begin);
+    if (!at_end()) advance();
+    first_on_line_ = false;
+    return token;
+  }
+  const std::size_t length = run_length(bytes_.substr(at_));
+  token.text = bytes_.substr(at_, length == 0 ? 1 : length);
+  token.kind = length == 0                             ? Kind::kSign
+               : read_number(token.text, token.number) ? Kind::kNumber
+                                                       : Kind::kWord;
+  at_ += token.text.size();
+  column_ += static_cast<std::uint32_t>(token.text.size());
+  return token;
+}
+
+}  // namespace zonepack

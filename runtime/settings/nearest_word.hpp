@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace zonepack {
+
+// The end of a message about a word that is not known: `; did you mean "b"? Known: a, b, c` when
+// one is near enough (insertions, deletions and replacements, at most a third of the word's length
+// and one more), else `; known: a, b, c`. At most kMostShown words are listed.
+inline constexpr std::size_t kMostShown = 64;
+std::string known_words_text(std::string_view word, const std::vector<std::string>& known);
+
+}  // namespace zonepack

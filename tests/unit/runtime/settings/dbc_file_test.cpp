@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/settings/dbc_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+namespace zonepack {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+LoadedDbc parse(const std::string& text) { return parse_dbc(text, "a.dbc"); }
+
+// A message of 8 bytes, id 100, with what is given as its signals.
+std::string message(const std::string& signals) { return "BO_ 100 M: 8 N\n" + signals + "\n"; }
+
+DbcFound find(const LoadedDbc& loaded, const std::string& name) {
+  std::string fault;
+  const auto found = loaded.file.find(name, fault);
+  EXPECT_TRUE(found.has_value()) << fault;
+  return found.value_or(DbcFound{});
+}
+
+std::string fault_of(const LoadedDbc& loaded, const std::string& name) {
+  std::string fault;
+  EXPECT_FALSE(loaded.file.find(name, fault).has_value()) << name;
+  return fault;
+}
+
+CanFrame frame(std::uint32_t id, std::initializer_list<int> bytes) {
+  CanFrame made;
+  made.id = id;
+  for (const int byte : bytes) made.data[made.len++] = static_cast<std::uint8_t>(byte);
+  return made;
+}
+
+TEST(DbcFile, ReadsTheOdometersOfAnAgileX) {
+  const LoadedDbc loaded = load_dbc(ZONEPACK_SOURCE_DIR "/config/agilex.dbc");
+  EXPECT_THAT(loaded.faults, IsEmpty());
+  const DbcFound left = find(loaded, "Odometry.LeftWheel");
+  EXPECT_EQ(left.signal.id, 0x311u);
+  EXPECT_FALSE(left.signal.extended);
+  EXPECT_EQ(left.unit, "m");
+  EXPECT_EQ(left.cycle_s, 0.02);
+  // 0x40DB = 16603 mm.
+  const auto reading = read_signal(left.signal, frame(0x311, {0, 0, 0x40, 0xDB, 0, 1, 0x5B, 0xCF}));
+  EXPECT_DOUBLE_EQ(reading.value, 16.603);
+}
+
+// Each layout read from a frame by hand: bytes 12 34 56 78 9A BC DE F0.
+TEST(DbcFile, ReadsEveryOrderSignAndLength) {
+  const CanFrame f = frame(100, {0x12, 0x34, 0x56, 0x78, 0x9A, 0xBC, 0xDE, 0xF0});
+  struct Case {
+    const char* layout;
+    double value;
+  };
+  for (const Case& c : {
+           Case{"0|16@1+ (1,0)", 0x3412}, Case{"7|16@0+ (1,0)", 0x1234},
+           Case{"4|8@1+ (1,0)", 0x41},          // high nibble of 12, low nibble of 34 above it
+           Case{"3|8@0+ (1,0)", 0x23},          // low nibble of 12, high nibble of 34 below it
+           Case{"56|8@1- (1,0)", -16},          // F0 = -16
+           Case{"63|4@0- (1,0)", -1},           // high nibble F
+           Case{"56|1@1+ (1,0)", 0},            // lowest bit of F0
+           Case{"63|1@0+ (1,0)", 1},            // its highest
+           Case{"0|8@1+ (0.5,-40)", -31},       // 18 / 2 - 40
+           Case{"0|8@1+(-2,1E+1)", -26},        // 18 * -2 + 10
+           Case{"0|8@1+ (+.25,+1.5e1)", 19.5},  // 18 / 4 + 15
+           Case{"0|64@1- (1,0)", -1090226688147180526.0},  // F0DEBC9A78563412
+           Case{"7|64@0+ (1,0)", 1311768467463790320.0},   // 123456789ABCDEF0
+       }) {
+    const LoadedDbc loaded = parse(message(" SG_ S : " + std::string(c.layout) + " [0|0] \"\" N"));
+    ASSERT_THAT(loaded.faults, IsEmpty()) << c.layout;
+    EXPECT_EQ(read_signal(find(loaded, "M.S").signal, f).value, c.value) << c.layout;
+  }
+}
+
+TEST(DbcFile, AnIdWithBit31HasTwentyNineBits) {
+  // 2147484937 = 0x80000509, 2566845669 = 0x98FEF4E5.
+  const LoadedDbc loaded = parse(
+      "BO_ 2147484937 A: 8 N\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" N\n"
+      "BO_ 2566845669 B: 8 N\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" N\n"
+      "BO_ 2048 C: 8 N\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" N\n"
+      "BO_ 3221225472 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX\n"
+      " SG_ Loose : 0|8@1+ (1,0) [0|0] \"\" Vector__XXX\n");
+  EXPECT_THAT(loaded.faults, IsEmpty());
+  EXPECT_EQ(find(loaded, "A.S").signal.id, 0x509u);
+  EXPECT_TRUE(find(loaded, "A.S").signal.extended);
+  EXPECT_EQ(find(loaded, "B.S").signal.id, 0x18FEF4E5u);
+  EXPECT_THAT(fault_of(loaded, "C.S"), HasSubstr("more than 11 bits; a 29-bit id has 2147483648"));
+  EXPECT_THAT(fault_of(loaded, "VECTOR__INDEPENDENT_SIG_MSG.Loose"), HasSubstr("no message"));
+  EXPECT_THAT(loaded.file.messages(), SizeIs(3));
+}
+
+TEST(DbcFile, ValueTypesMakeFloatsAndDoubles) {
+  const LoadedDbc loaded = parse(
+      "BO_ 100 M: 8 N\n SG_ F : 0|32@1- (1,0) [0|0] \"\" N\n"
+      " SG_ I : 32|32@1- (1,0) [0|0] \"\" N\n"
+      "BO_ 101 D: 8 N\n SG_ D : 7|64@0- (1,0) [0|0] \"\" N\n SG_ Short : 0|16@1- (1,0) [0|0] \"\" "
+      "N\n"
+      "SIG_VALTYPE_ 100 F : 1;\nSIG_VALTYPE_ 100 I : 0;\nSIG_VALTYPE_ 101 D : 2;\n"
+      "SIG_VALTYPE_ 101 Short : 1;\nSIG_VALTYPE_ 999 Nobody : 1;\n");
+  EXPECT_THAT(loaded.faults, IsEmpty());
+  // 1.5f = 3FC00000, -2 as int32; 2.5 = 4004000000000000.
+  const CanFrame f = frame(100, {0, 0, 0xC0, 0x3F, 0xFE, 0xFF, 0xFF, 0xFF});
+  EXPECT_EQ(read_signal(find(loaded, "M.F").signal, f).value, 1.5);
+  EXPECT_EQ(read_signal(find(loaded, "M.I").signal, f).value, -2);
+  EXPECT_EQ(read_signal(find(loaded, "D.D").signal, frame(101, {0x40, 4, 0, 0, 0, 0, 0, 0})).value,
+            2.5);
+  EXPECT_THAT(fault_of(loaded, "D.Short"), HasSubstr("a float of 16 bits; expected 32"));
+}
+
+TEST(DbcFile, MultiplexedSignalsAreThereWhenTheirMultiplexerSaysSo) {
+  const LoadedDbc loaded = parse(
+      message(" SG_ Page M : 0|4@1+ (1,0) [0|0] \"\" N\n SG_ One m1 : 8|8@1+ (1,0) [0|0] \"\" N\n"
+              " SG_ Ten m10 : 8|8@1+ (1,0) [0|0] \"\" N"));
+  EXPECT_THAT(loaded.faults, IsEmpty());
+  using Status = SignalReading::Status;
+  EXPECT_EQ(read_signal(find(loaded, "M.One").signal, frame(100, {1, 7})).raw, 7);
+  EXPECT_EQ(read_signal(find(loaded, "M.Ten").signal, frame(100, {1, 7})).status, Status::kOther);
+  EXPECT_EQ(read_signal(find(loaded, "M.Ten").signal, frame(100, {0xFA, 7})).raw, 7);
+  EXPECT_EQ(read_signal(find(loaded, "M.Page").signal, frame(100, {0xFA, 7})).raw, 10);
+}
+
+TEST(DbcFile, MultiplexersMayBeMultiplexedThemselves) {
+  const LoadedDbc loaded = parse(
+      message(
+          " SG_ Outer M : 0|8@1+ (1,0) [0|0] \"\" N\n SG_ Inner m2M : 8|8@1+ (1,0) [0|0] \"\" N\n"
+          " SG_ Deep m0 : 16|8@1+ (1,0) [0|0] \"\" N\n"
+          " SG_ Flat m5 : 16|8@1+ (1,0) [0|0] \"\" N") +
+      "SG_MUL_VAL_ 100 Inner Outer 2-2;\nSG_MUL_VAL_ 100 Deep Inner 3-4, 7-7;\n"
+      "SG_MUL_VAL_ 100 Flat Outer 5-6 ;\n");
+  EXPECT_THAT(loaded.faults, IsEmpty());
+  const CanSignal deep = find(loaded, "M.Deep").signal;
+  const CanSignal flat = find(loaded, "M.Flat").signal;
+  for (int outer = 0; outer < 9; ++outer) {
+    for (int inner = 0; inner < 9; ++inner) {
+      const CanFrame f = frame(100, {outer, inner, 42});
+      const bool is_deep = outer == 2 && (inner == 3 || inner == 4 || inner == 7);
+      EXPECT_EQ(read_signal(deep, f).raw, is_deep ? 42 : 0) << outer << inner;
+      EXPECT_EQ(read_signal(flat, f).raw, outer == 5 || outer == 6 ? 42 : 0) << outer << inner;
+    }
+  }
+}
+
+TEST(DbcFile, MultiplexersThatCannotBeFollowedAreFaultsOfTheirSignals) {
+  const std::string tail = " : 0|8@1+ (1,0) [0|0] \"\" N\n";
+  const LoadedDbc two = parse(message(" SG_ A M" + tail + " SG_ B M" + tail + " SG_ S m1" + tail));
+  EXPECT_THAT(fault_of(two, "M.S"), HasSubstr("several multiplexers; expected SG_MUL_VAL_"));
+  EXPECT_THAT(fault_of(parse(message(" SG_ S m1" + tail)), "M.S"), HasSubstr("multiplexer (M)"));
+  const LoadedDbc ring = parse(message(" SG_ A m1M" + tail + " SG_ B m1M" + tail) +
+                               "SG_MUL_VAL_ 100 A B 1-1;\nSG_MUL_VAL_ 100 B A 1-1;\n");
+  EXPECT_THAT(ring.faults, IsEmpty());
+  EXPECT_THAT(fault_of(ring, "M.A"), HasSubstr("more than 3 multiplexers above each other"));
+  const LoadedDbc many =
+      parse(message(" SG_ A M" + tail + " SG_ S m1" + tail) +
+            "SG_MUL_VAL_ 100 S A 0-0,2-2,4-4,6-6,8-8,10-10,12-12,14-14,16-16;\n");
+  EXPECT_THAT(fault_of(many, "M.S"), HasSubstr("more than 8 ranges"));
+}
+
+TEST(DbcFile, CycleTimesComeFromTheMessageOrTheDefault) {
+  const std::string file =
+      "BO_ 1 A: 8 N\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" N\nBO_ 2 B: 8 N\n"
+      " SG_ S : 0|8@1+ (1,0) [0|0] \"\" N\nBO_ 3 C: 8 N\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" N\n"
+      "BA_DEF_ BO_ \"GenMsgCycleTime\" INT 0 65535;\nBA_ \"GenMsgCycleTime\" BO_ 1 10;\n"
+      "BA_ \"GenMsgCycleTime\" BO_ 3 0;\nBA_ \"Other\" BO_ 2 5;\nBA_ \"Name\" \"a bus\";\n";
+  const LoadedDbc none = parse(file);
+  EXPECT_THAT(none.faults, IsEmpty());
+  EXPECT_EQ(find(none, "A.S").cycle_s, 0.01);
+  EXPECT_EQ(find(none, "B.S").cycle_s, std::nullopt);
+  const LoadedDbc with = parse(file + "BA_DEF_DEF_ \"GenMsgCycleTime\" 100;\n");
+  EXPECT_EQ(find(with, "A.S").cycle_s, 0.01);
+  EXPECT_EQ(find(with, "B.S").cycle_s, 0.1);
+  EXPECT_EQ(find(with, "C.S").cycle_s, std::nullopt);  // 0: not cyclic
+}
+
+TEST(DbcFile, SkipsEveryOtherStatement) {
+  const LoadedDbc loaded = parse(
+      "\xEF\xBB\xBFVERSION \"BO_ 1 X: 8 N\"\r\n\r\nNS_ : \r\n\tNS_DESC_\r\n\tCM_\r\n\tBA_DEF_\r\n"
+      "\tSOMETHING_NEW_\r\n\tSG_MUL_VAL_\r\n\r\nBS_: 500 : 1,2\r\n\r\nBU_: N O Vector__XXX\r\n  "
+      "P\r\n"
+      "VAL_TABLE_ T 1 \"on; off\" 0 \"BO_ 7 No: 8 N\" ;\r\n"
+      "BO_ 100 M: 8 N\r\n SG_ S : 0|8@1+ (1,0) [0|255] \"\xB0\\\"C; \" N,O P\r\n\r\n"
+      "BO_TX_BU_ 100 : N,O;\r\nEV_ E: 0 [0|1] \"\" 0 2 DUMMY_NODE_VECTOR0 Vector__XXX;\r\n"
+      "ENVVAR_DATA_ E: 5;\r\nEV_DATA_ E: 5;\r\n"
+      "SGTYPE_ T : 8@1+ (1,0) [0|1] \"\" 0 , V;\r\nSIG_GROUP_ 100 G 1 : S;\r\n"
+      "CM_ SG_ 100 S \"a text over\r\nBO_ 101 No: 8 N\r\nseveral lines; \\\"quoted\\\" too\";\r\n"
+      "CM_ BU_ N \"x\";\r\nCM_ EV_ E \"x\";\r\nCM_ \"x\";\r\n"
+      "BA_DEF_ \"A\" STRING ;\r\nBA_DEF_ BU_ \"B\" ENUM \"x\",\"y;\";\r\nBA_DEF_REL_ BU_SG_REL_ "
+      "\"R\" "
+      "INT 0 1;\r\n"
+      "BA_DEF_DEF_ \"A\" \"\";\r\nBA_DEF_DEF_REL_ \"R\" 0;\r\nBA_ \"A\" \"v\";\r\nBA_ \"B\" BU_ N "
+      "1;\r\n"
+      "BA_REL_ \"R\" BU_SG_REL_ N SG_ 100 S 1;\r\nBU_SG_REL_ N SG_ 100 S;\r\n"
+      "BA_DEF_SGTYPE_ \"x\" INT 0 1;\r\nBA_SGTYPE_ \"x\" T 1;\r\nSIG_TYPE_REF_ 100 S : T;\r\n"
+      "SIGTYPE_VALTYPE_ T : 1;\r\nSGTYPE_VAL_ T 0 \"a\";\r\nCAT_DEF_ 1 x 2;\r\nCAT_ 1 x 2;\r\n"
+      "FILTER 1 x 2;\r\nVAL_ 100 S 1 \"one\"\r\n 2 \"two\" ;\r\n"
+      "BO_ 200 Last: 8 N\r\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" Vector__XXX");
+  EXPECT_THAT(loaded.faults, IsEmpty());
+  ASSERT_THAT(loaded.file.messages(), SizeIs(2));
+  EXPECT_EQ(find(loaded, "M.S").unit, "\xB0\\\"C; ");
+  EXPECT_EQ(find(loaded, "Last.S").signal.id, 200u);
+  EXPECT_EQ(loaded.file.messages()[0].signals[0].most, 255);
+}
+
+TEST(DbcFile, SymbolsMayStandOnOneLineOrBeFollowedByNothing) {
+  EXPECT_THAT(parse("NS_ : CM_ BA_DEF_ BA_\nBS_:\nBU_:\nCM_ \"x\";").faults, IsEmpty());
+  EXPECT_THAT(parse("NS_ :\n CM_\n BA_\nCM_ BO_ 1 \"x\";\nBA_ \"a\" 1;").faults, IsEmpty());
+  EXPECT_THAT(parse("NS_ :\n CM_").faults, IsEmpty());
+  EXPECT_THAT(parse("").faults, IsEmpty());
+}
+
+TEST(DbcFile, FaultsTellLineColumnAndWhatWasExpected) {
+  struct Case {
+    std::string text;
+    const char* fault;
+  };
+  for (const Case& c : {
+           Case{"BO_ 0x64 M: 8 N\n", "a.dbc:1:5: expected the message's id, a whole number"},
+           Case{"\n\n  BOO_ 1 M: 8 N\n", "a.dbc:3:3: expected a statement such as BO_, SG_"},
+           Case{"BO_ 1 M 8 N\n", "a.dbc:1:9: expected ':', found '8'"},
+           Case{"SG_ S : 0|8@1+ (1,0) [0|0] \"\" N\n",
+                "a.dbc:1:1: expected a message (BO_) before"},
+           Case{message(" SG_ S 0|8@1+ (1,0) [0|0] \"\" N"), "a.dbc:2:8: expected ':', found '0'"},
+           Case{message(" SG_ S : 0|8@2+ (1,0) [0|0] \"\" N"),
+                "a.dbc:2:14: expected the byte order"},
+           Case{message(" SG_ S : 0|8@1 (1,0) [0|0] \"\" N"), "a.dbc:2:16: expected + (unsigned)"},
+           Case{message(" SG_ S : 0|8@1+ (x,0) [0|0] \"\" N"), "a.dbc:2:18: expected the factor"},
+           Case{message(" SG_ S : 0|8@1+ (1,0) [0|0] N"), "a.dbc:2:29: expected the unit"},
+           Case{message(" SG_ S q : 0|8@1+ (1,0) [0|0] \"\" N"), "a.dbc:2:8: expected M, m and"},
+           Case{message(" SG_ S mM : 0|8@1+ (1,0) [0|0] \"\" N"), "a.dbc:2:8: expected M, m and"},
+           Case{message(" SG_ S : 0|8@1+ (1,0) [0|0] \"rad"),
+                "a.dbc:2:29: expected a quote at the end of the text that begins here"},
+           Case{"CM_ \"a\"\nBA_ \"b\" 1;",
+                "a.dbc:2:1: expected ';' at the end of the CM_ of line 1"},
+           Case{"CM_ \"a\"",
+                "a.dbc:1:8: expected ';' at the end of the CM_ of line 1, found the end"},
+           Case{"SIG_VALTYPE_ 1 S : 3;", "a.dbc:1:20: expected 0 (integer), 1 (float) or 2"},
+           Case{"SG_MUL_VAL_ 1 S M 1;", "a.dbc:1:20: expected '-', found ';'"},
+           Case{"BA_ \"GenMsgCycleTime\" BO_ 1 x;", "a.dbc:1:29: expected the cycle time in ms"},
+       }) {
+    EXPECT_THAT(parse(c.text).faults, ElementsAre(HasSubstr(c.fault))) << c.text;
+  }
+}
+
+TEST(DbcFile, GoesOnAfterAFaultAndStopsAtTwenty) {
+  EXPECT_THAT(parse("BO_ x\nBO_ 1 A: 8 N\n SG_ S\n SG_ T : 0|8@1+ (1,0) [0|0] \"\" N\n"
+                    "BO_ y\n")
+                  .faults,
+              ElementsAre(HasSubstr("a.dbc:1:5"), HasSubstr("a.dbc:4:2"), HasSubstr("a.dbc:5:5")));
+  std::string many;
+  for (int i = 0; i < 100; ++i) many += "BO_ x\n";
+  EXPECT_THAT(parse(many).faults, SizeIs(20));
+}
+
+TEST(DbcFile, ANameThatIsNotThereIsToldWithTheNearest) {
+  const LoadedDbc loaded = load_dbc(ZONEPACK_SOURCE_DIR "/config/agilex.dbc");
+  EXPECT_THAT(
+      fault_of(loaded, "Odometri.LeftWheel"),
+      HasSubstr("agilex.dbc: no message Odometri; did you mean \"Odometry\"? Known: Motion"));
+  EXPECT_THAT(fault_of(loaded, "Odometry.LeftWeel"),
+              HasSubstr("Odometry has no signal LeftWeel; did you mean \"LeftWheel\"? Known: "
+                        "LeftWheel, RightWheel"));
+  EXPECT_THAT(fault_of(loaded, "Odometry"),
+              HasSubstr("Odometry is a message; expected MESSAGE.SIGNAL"));
+  const LoadedDbc twice = parse(message(" SG_ S : 0|8@1+ (1,0) [0|0] \"\" N\n"
+                                        " SG_ S : 8|8@1+ (1,0) [0|0] \"\" N") +
+                                "BO_ 5 D: 8 N\nBO_ 6 D: 8 N\n");
+  EXPECT_THAT(fault_of(twice, "M.S"), HasSubstr("a.dbc:1: lines 2 and 3 both define S"));
+  EXPECT_THAT(fault_of(twice, "D.S"), HasSubstr("lines 4 and 5 both define a message D"));
+}
+
+TEST(DbcFile, ASignalThatDoesNotFitIsAFaultOnlyWhenItIsAskedFor) {
+  const LoadedDbc loaded = parse(
+      message(" SG_ Good : 0|8@1+ (1,0) [0|0] \"\" N\n SG_ Far : 60|8@1+ (1,0) [0|0] \"\" N\n"
+              " SG_ Long : 0|65@1+ (1,0) [0|0] \"\" N\n SG_ None : 0|0@1+ (1,0) [0|0] \"\" N\n"
+              " SG_ Zero : 0|8@1+ (0,0) [0|0] \"\" N"));
+  EXPECT_THAT(loaded.faults, IsEmpty());
+  EXPECT_EQ(find(loaded, "M.Good").signal.bits.length, 8);
+  EXPECT_THAT(
+      fault_of(loaded, "M.Far"),
+      HasSubstr("a.dbc:3:2: M.Far cannot be read: its bits need 9 bytes, the message has 8"));
+  EXPECT_THAT(fault_of(loaded, "M.Long"), HasSubstr("expected 1 to 64 bits"));
+  EXPECT_THAT(fault_of(loaded, "M.None"), HasSubstr("expected 1 to 64 bits"));
+  EXPECT_THAT(fault_of(loaded, "M.Zero"), HasSubstr("its factor is 0"));
+}
+
+TEST(DbcFile, FilesThatAreMissingOrTooLargeAreRefused) {
+  EXPECT_THAT(load_dbc("/no/such.dbc").faults,
+              ElementsAre(HasSubstr("/no/such.dbc: cannot be read: No such file")));
+  EXPECT_FALSE(load_dbc(testing::TempDir()).ok());
+  EXPECT_THAT(parse(std::string(kLargestDbc + 1, ' ')).faults,
+              ElementsAre(HasSubstr("over 4 MiB")));
+  std::string many = "BO_ 1 M: 8 N\n";
+  for (std::size_t i = 0; i < kMostDbcSignals + 1; ++i) many += "SG_ S:0|8@1+(1,0)[0|0]\"\"\n";
+  EXPECT_THAT(parse(many).faults, ElementsAre(HasSubstr("expected at most 65536 signals")));
+}
+
+}  // namespace
+}  // namespace zonepack
