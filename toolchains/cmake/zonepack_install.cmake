@@ -16,8 +16,8 @@ function(zonepack_install_headers)
   endforeach()
 endfunction()
 
-zonepack_install_libraries(zonepack-runtime zonepack_platform zonepack_pack_format zonepack_report
-                           zonepack_core zonepack_runtime)
+zonepack_install_libraries(zonepack-runtime zonepack_platform zonepack_pack_format zonepack_protocol
+                           zonepack_report zonepack_core zonepack_runtime)
 zonepack_install_headers(platform runtime)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/generated/runtime
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/zonepack FILES_MATCHING PATTERN "*_generated.h")

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "platform/base/result.hpp"
+#include "platform/descriptor.hpp"
+
+// Sockets between programs of one machine that carry whole messages and file descriptors
+// (SOCK_SEQPACKET). Errors: kIo with errno; the others are told at each call. Threads: one at a
+// time per object.
+namespace zonepack {
+
+// Who is at the other end, as the kernel knew it when the connection was made.
+struct PeerCredentials {
+  std::int32_t pid = 0;
+  std::uint32_t uid = 0;
+  std::uint32_t gid = 0;
+};
+
+class LocalSocket {
+ public:
+  static constexpr std::size_t kMostDescriptors = 4;
+
+  // What one receive() gave; bytes 0: the peer closed.
+  struct Received {
+    std::size_t bytes = 0;
+    bool cut = false;  // the message was longer than the buffer, its end is lost
+    std::array<Descriptor, kMostDescriptors> descriptors;
+    std::size_t descriptor_count = 0;
+  };
+
+  // kNotFound: no such socket, or nobody listens on it. kBusy: its queue is full.
+  static Result<LocalSocket> connect(const std::string& path);
+
+  LocalSocket() = default;
+  explicit LocalSocket(Descriptor fd) noexcept : fd_(std::move(fd)) {}
+
+  // One message, whole or not at all, never waiting. kBusy: no room now; kCancelled: the peer has
+  // closed.
+  Result<void> send(std::span<const std::byte> message,
+                    std::span<const int> descriptors = {}) const noexcept;
+
+  // The next message, never waiting. kBusy: there is none.
+  Result<Received> receive(std::span<std::byte> buffer) const noexcept;
+
+  // At most this many bytes wait in the kernel for the peer to read, beside one message.
+  Result<void> limit_output(std::size_t bytes) const noexcept;
+
+  // Waits until something can be received or sent; false when the time is over.
+  bool wait(bool to_send, int timeout_ms) const noexcept;
+
+  PeerCredentials peer() const noexcept;
+  int fd() const noexcept { return fd_.get(); }
+  bool is_open() const noexcept { return fd_.is_open(); }
+  void close() noexcept { fd_.close(); }
+
+ private:
+  Descriptor fd_;
+};
+
+// A name in the file system that others connect to. Its mode decides who may. Removed by the
+// destructor.
+class LocalListener {
+ public:
+  static constexpr std::size_t kMostPath = 107;
+
+  // kExists: somebody listens there, or it is something else than a socket; a socket that nobody
+  // listens on is replaced. kTooLarge: the path is over kMostPath bytes.
+  static Result<LocalListener> listen(const std::string& path, unsigned mode);
+
+  LocalListener(LocalListener&& other) noexcept
+      : fd_(std::move(other.fd_)), path_(std::exchange(other.path_, {})) {}
+  LocalListener& operator=(LocalListener&& other) noexcept;
+  ~LocalListener();
+
+  // kBusy: nobody waits.
+  Result<LocalSocket> accept() const noexcept;
+
+  int fd() const noexcept { return fd_.get(); }
+  const std::string& path() const noexcept { return path_; }
+
+ private:
+  LocalListener(Descriptor fd, std::string path) : fd_(std::move(fd)), path_(std::move(path)) {}
+  Descriptor fd_;
+  std::string path_;
+};
+
+}  // namespace zonepack
