@@ -1,72 +1,104 @@
 // SPDX-License-Identifier: Apache-2.0
-// zoned: the robot's program. Wiring only; `replay` lives in runtime/replay.
+// zoned: the robot's program. Wiring only; `replay` lives in runtime/replay, `run` in runtime/live.
 #include <CLI/CLI.hpp>
 
+#include "runtime/live/can_source.hpp"
+#include "runtime/live/run_command.hpp"
 #include "runtime/replay/replay_command.hpp"
 #include "runtime/report/report.hpp"
 
 namespace {
 
 using zonepack::ReplayArguments;
+using zonepack::RunArguments;
+
+using zonepack::RunChoices;
+
+CLI::Option* add_file(CLI::App& app, const char* name, std::string& target, const char* help) {
+  return app.add_option(name, target, help)->type_name("FILE");
+}
+
+// A text option that is turned into a value, or refused with what is expected.
+template <typename Parse>
+CLI::Option* add_parsed(CLI::App& app, const char* name, const char* type, const char* help,
+                        const char* expected, Parse parse) {
+  return app
+      .add_option_function<std::string>(
+          name,
+          [name, expected, parse](const std::string& text) {
+            if (!parse(text)) {
+              throw CLI::ValidationError(name, "'" + text + "' is not " + expected);
+            }
+          },
+          help)
+      ->type_name(type);
+}
+
+void add_choices(CLI::App& app, RunChoices& choices) {
+  add_file(app, "--config", choices.config, "settings of the robot (YAML)")->required();
+  app.add_option("--map", choices.map, "map folder; else map.path of the settings")
+      ->type_name("DIR");
+  add_file(app, "--corrections", choices.corrections,
+           "poses from a localizer: stamp received x y yaw sigma_x sigma_y sigma_yaw");
+  add_file(app, "--truth", choices.truth, "true poses: t x y z qx qy qz qw");
+  add_parsed(app, "--start", "X,Y,YAW_DEG|truth|fix", "where the robot starts (default: fix)",
+             "X,Y,YAW_DEG, truth or fix", [&choices](const std::string& text) {
+               const auto start = zonepack::parse_start(text);
+               if (start) choices.start = *start;
+               return start.has_value();
+             });
+  add_parsed(app, "--budget", "SIZE",
+             "hard limit of all that grows with the map (default: settings, else the smallest)",
+             "a SIZE: integer bytes, or with suffix KiB, MiB or GiB, such as 8MiB",
+             [&choices](const std::string& text) {
+               choices.budget = zonepack::parse_byte_count(text);
+               return choices.budget.has_value();
+             });
+  app.add_option("--max-signatures", choices.max_signatures,
+                 "most signatures in memory at once; 0: no limit");
+  app.add_option("--storage-rate", choices.storage_rate,
+                 "bytes read per second, as preloading takes it to be")
+      ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{1'000'000'000'000}));
+}
 
 void add_replay(CLI::App& app, ReplayArguments& arguments, int& exit_code) {
   CLI::App& replay = *app.add_subcommand(
       "replay", "drives a recorded run through the robot's own cycle, on simulated time");
-  const auto file = [&replay](const char* name, std::string& target, const char* help) {
-    return replay.add_option(name, target, help)->type_name("FILE");
-  };
-  const auto drawing = [&file](const char* name, std::string& target, const char* help) {
-    file(name, target, help)->check([](const std::string& path) {
+  const auto drawing = [&replay](const char* name, std::string& target, const char* help) {
+    add_file(replay, name, target, help)->check([](const std::string& path) {
       return zonepack::report::fault_of_report_name(path).value_or(std::string());
     });
   };
-  file("--config", arguments.config, "settings of the robot (YAML)")->required();
-  replay.add_option("--map", arguments.map, "map folder; else map.path of the settings")
-      ->type_name("DIR");
+  add_choices(replay, arguments);
   replay.add_option("--can", arguments.can, "CAN log, as candump -l or -L writes it")
       ->type_name("LOG")
       ->required();
-  file("--corrections", arguments.corrections,
-       "poses from a localizer: stamp received x y yaw sigma_x sigma_y sigma_yaw");
-  file("--truth", arguments.truth, "true poses: t x y z qx qy qz qw");
-  replay
-      .add_option_function<std::string>(
-          "--start",
-          [&arguments](const std::string& text) {
-            const auto start = zonepack::parse_start(text);
-            if (!start) {
-              throw CLI::ValidationError("--start",
-                                         "'" + text + "' is neither X,Y,YAW_DEG nor truth nor fix");
-            }
-            arguments.start = *start;
-          },
-          "where the robot starts (default: fix)")
-      ->type_name("X,Y,YAW_DEG|truth|fix");
-  replay
-      .add_option_function<std::string>(
-          "--budget",
-          [&arguments](const std::string& text) {
-            arguments.budget = zonepack::parse_byte_count(text);
-            if (!arguments.budget) {
-              throw CLI::ValidationError(
-                  "--budget", "'" + text +
-                                  "' is no SIZE; give integer bytes, or with suffix KiB, MiB or "
-                                  "GiB, such as 8MiB");
-            }
-          },
-          "hard limit of all that grows with the map (default: settings, else the smallest)")
-      ->type_name("SIZE");
-  replay.add_option("--max-signatures", arguments.max_signatures,
-                    "most signatures in memory at once; 0: no limit");
-  replay.add_option("--storage-rate", arguments.storage_rate, "bytes read per second")
-      ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{1'000'000'000'000}));
-  file("--events", arguments.events, "write the event log, one JSON object a line");
-  file("--json", arguments.json, "write the summary as JSON ('-': standard output)");
+  add_file(replay, "--events", arguments.events, "write the event log, one JSON object a line");
+  add_file(replay, "--json", arguments.json, "write the summary as JSON ('-': standard output)");
   drawing("--report", arguments.report, "draw the run: .html, .svg or .png");
   drawing("--picture", arguments.picture, "draw only its route, loading curves and bytes");
-  file("--baseline", arguments.baseline,
-       "RTAB-Map's own curve of this run (CSV), to draw beside ours");
+  add_file(replay, "--baseline", arguments.baseline,
+           "RTAB-Map's own curve of this run (CSV), to draw beside ours");
   replay.callback([&] { exit_code = zonepack::run_replay(arguments); });
+}
+
+void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
+  CLI::App& run = *app.add_subcommand(
+      "run", "keeps the map's zones in memory while the robot drives, until SIGTERM");
+  add_choices(run, arguments);
+  add_parsed(run, "--can", "SOURCE", "log:FILE[@SPEED]: a CAN log, played on its own time",
+             "log:FILE or log:FILE@SPEED with a speed of 0.001 to 1000000",
+             [&arguments](const std::string& text) {
+               const auto source = zonepack::parse_can_source(text);
+               if (source) arguments.source = *source;
+               return source.has_value();
+             })
+      ->required();
+  add_file(run, "--events", arguments.events, "write the event log, one JSON object a line");
+  add_file(run, "--json", arguments.json, "write the summary as JSON ('-': standard output)");
+  run.add_flag("--allow-degraded", arguments.allow_degraded,
+               "go on without real-time priority or locked memory");
+  run.callback([&] { exit_code = zonepack::run_live(arguments); });
 }
 
 }  // namespace
@@ -81,6 +113,8 @@ int main(int argc, char** argv) {
   ReplayArguments arguments;
   int exit_code = 0;
   add_replay(app, arguments, exit_code);
+  RunArguments run_arguments;
+  add_run(app, run_arguments, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

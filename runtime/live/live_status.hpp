@@ -26,19 +26,20 @@ struct WorstCycle {
   CycleStep step = CycleStep::kReceive;  // the longest part
   std::int64_t step_ns = 0;
   std::uint32_t frames = 0, corrections = 0, loads = 0, commands = 0;
-  bool preempted = false;  // another thread ran in between
 };
 
 // What was left undone or late, each with its stated consequence.
 struct OverloadCounters {
-  std::uint64_t missed_deadlines = 0;   // cycles that began a period or more late
-  std::uint64_t skipped_periods = 0;    // periods without a cycle for that reason
-  std::uint64_t deferred_frames = 0;    // cycles that left frames waiting on the bus
-  std::uint64_t dropped_frames = 0;     // lost before they could be read
-  std::uint64_t deferred_commands = 0;  // cycles that left commands waiting
-  std::uint64_t lost_events = 0;        // the queue to their writer was full
-  std::uint64_t lost_records = 0;       // of what cycles did
-  std::uint64_t lost_recordings = 0;    // cycles whose inputs could not be recorded
+  std::uint64_t missed_deadlines = 0;     // cycles that began a period or more late
+  std::uint64_t skipped_periods = 0;      // periods without a cycle for that reason
+  std::uint64_t deferred_frames = 0;      // cycles that left frames waiting on the bus
+  std::uint64_t dropped_frames = 0;       // lost before they could be read
+  std::uint64_t deferred_commands = 0;    // cycles that left commands waiting
+  std::uint64_t lost_events = 0;          // the queue to their writer was full
+  std::uint64_t lost_service_events = 0;  // the queue to the server was full; it looks again
+  std::uint64_t lost_records = 0;         // of what cycles did
+  std::uint64_t lost_replies = 0;         // to commands
+  std::uint64_t lost_recordings = 0;      // cycles whose inputs could not be recorded
 };
 
 // How the run stands, as the control thread tells it after every cycle.

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "platform/atomic_file.hpp"
 #include "platform/can_log.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/replay/baseline.hpp"
+#include "runtime/replay/log_faults.hpp"
 #include "runtime/replay/replay.hpp"
 #include "runtime/replay/run_report.hpp"
 #include "runtime/replay/summary_text.hpp"
@@ -35,33 +35,10 @@ ReplayInput replay_input(const ReplayArguments& arguments, RunInputs& inputs, Ca
   return input;
 }
 
-void tell_log_faults(const std::string& path, const CanLogSummary& summary) {
-  for (const CanLogSummary::Fault& fault : summary.faults) {
-    std::cerr << path << ':' << fault.line << ": " << fault.what << '\n';
-  }
-  const std::uint64_t all = summary.broken_lines + summary.stray_stamps;
-  if (all > summary.faults.size()) {
-    std::cerr << path << ": " << all - summary.faults.size() << " further lines left out\n";
-  }
-  if (summary.read_error != 0) {
-    std::cerr << path << ": could not be read to its end (errno " << summary.read_error << ")\n";
-  }
-}
-
 std::optional<std::string> write_results(const ReplayArguments& arguments, const Catalog& catalog,
                                          const std::vector<BaselineRow>& baseline,
                                          const ReplayResult& result) {
-  const std::string json = summary_json(result.summary);
-  if (arguments.json == "-") {
-    std::cout << json;
-  } else {
-    std::cout << summary_table(result.summary);
-    if (!arguments.json.empty()) {
-      if (const auto written = write_file_atomically(arguments.json, json); !written) {
-        return arguments.json + ": cannot be written: " + to_string(written.error().code);
-      }
-    }
-  }
+  if (auto problem = write_summary(result.summary, arguments.json)) return problem;
   const RunReportInput run{catalog.folder, arguments.can, result.summary, result.trace, baseline};
   if (!arguments.picture.empty()) {
     if (auto problem = report::write_report(arguments.picture, make_run_picture(run))) {

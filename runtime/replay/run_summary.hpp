@@ -9,9 +9,27 @@
 
 namespace zonepack {
 
-// The result of a replay in numbers; `zoned replay --json` prints these names.
+// The result of a run in numbers; `zoned replay --json` and `zoned run --json` print these names.
 struct PoseError {
   double p50 = 0, p95 = 0, max = 0;  // metres, distance to the true position
+};
+
+// What a live run measured of itself; "live" is not about replays.
+struct LiveFigures {
+  struct Timing {
+    double p50 = 0, p99 = 0, p9999 = 0, max = 0;  // microseconds
+  };
+  ByteCount process_peak_bytes = 0;  // resident, by the kernel
+  ByteCount overhead_bytes = 0;      // of that, what lies outside of slots and map tables
+  std::uint64_t minor_faults = 0;    // these of the control thread, after its start
+  std::uint64_t major_faults = 0;
+  std::uint64_t allocations = 0;
+  std::uint64_t missed_deadlines = 0;
+  Timing cycle_us;   // the cycle's own work
+  Timing wakeup_us;  // begun after its deadline
+  std::uint64_t lost_events = 0;
+  bool realtime = false;
+  bool memory_locked = false;
 };
 
 struct RunSummary {
@@ -37,6 +55,7 @@ struct RunSummary {
   std::uint64_t corrections_used = 0;
   std::uint64_t corrections_rejected = 0;
   std::string event_log_hash;  // BLAKE2b-256 of the event log, hex
+  std::optional<LiveFigures> live;
 };
 
 }  // namespace zonepack

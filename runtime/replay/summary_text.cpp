@@ -3,9 +3,11 @@
 
 #include <array>
 #include <charconv>
+#include <iostream>
 #include <string_view>
 #include <type_traits>
 
+#include "platform/atomic_file.hpp"
 #include "runtime/event_log.hpp"
 
 namespace zonepack {
@@ -57,6 +59,25 @@ std::string error_json(const std::optional<PoseError>& error) {
          ", \"max\": " + shortest(error->max) + "}";
 }
 
+std::string timing_json(const LiveFigures::Timing& timing) {
+  return "{\"p50\": " + shortest(timing.p50) + ", \"p99\": " + shortest(timing.p99) +
+         ", \"p9999\": " + shortest(timing.p9999) + ", \"max\": " + shortest(timing.max) + "}";
+}
+
+void add_live(JsonObject& json, const LiveFigures& live) {
+  json.add("process_peak_bytes", live.process_peak_bytes);
+  json.add("overhead_bytes", live.overhead_bytes);
+  json.add("minor_faults", live.minor_faults);
+  json.add("major_faults", live.major_faults);
+  json.add("allocations", live.allocations);
+  json.add("missed_deadlines", live.missed_deadlines);
+  json.add("cycle_us", timing_json(live.cycle_us));
+  json.add("wakeup_us", timing_json(live.wakeup_us));
+  json.add("lost_events", live.lost_events);
+  json.add("realtime", live.realtime ? "true" : "false");
+  json.add("memory_locked", live.memory_locked ? "true" : "false");
+}
+
 }  // namespace
 
 std::string summary_json(const RunSummary& s) {
@@ -83,6 +104,7 @@ std::string summary_json(const RunSummary& s) {
   json.add("corrections_used", s.corrections_used);
   json.add("corrections_rejected", s.corrections_rejected);
   json.add("event_log_hash", json_quoted(s.event_log_hash));
+  if (s.live) add_live(json, *s.live);
   return json.finish();
 }
 
@@ -118,7 +140,36 @@ std::string summary_table(const RunSummary& s) {
   row("corrections used",
       count(s.corrections_used) + ", rejected " + count(s.corrections_rejected));
   row("event log", s.event_log_hash);
+  if (s.live) {
+    const auto timing = [](const LiveFigures::Timing& t) {
+      return "median " + fixed(t.p50, 1) + " us, 99 % " + fixed(t.p99, 1) + " us, 99.99 % " +
+             fixed(t.p9999, 1) + " us, most " + fixed(t.max, 1) + " us";
+    };
+    row("process, at most", bytes_text(s.live->process_peak_bytes));
+    row("beside the map", bytes_text(s.live->overhead_bytes));
+    row("control thread", count(s.live->minor_faults + s.live->major_faults) + " page faults, " +
+                              count(s.live->allocations) + " allocations, " +
+                              count(s.live->missed_deadlines) + " missed deadlines");
+    row("cycle", timing(s.live->cycle_us));
+    row("wake-up", timing(s.live->wakeup_us));
+    if (!s.live->realtime || !s.live->memory_locked) {
+      row("DEGRADED", std::string(s.live->realtime ? "" : "not real-time ") +
+                          (s.live->memory_locked ? "" : "memory not locked"));
+    }
+  }
   return text;
+}
+
+std::optional<std::string> write_summary(const RunSummary& summary, const std::string& json_path) {
+  if (json_path == "-") {
+    std::cout << summary_json(summary);
+    return std::nullopt;
+  }
+  std::cout << summary_table(summary);
+  if (json_path.empty()) return std::nullopt;
+  const auto written = write_file_atomically(json_path, summary_json(summary));
+  if (written) return std::nullopt;
+  return json_path + ": cannot be written: " + to_string(written.error().code);
 }
 
 }  // namespace zonepack

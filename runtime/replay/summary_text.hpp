@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "runtime/replay/run_summary.hpp"
@@ -13,5 +14,9 @@ std::string summary_json(const RunSummary& summary);
 
 // The summary as a table for people.
 std::string summary_table(const RunSummary& summary);
+
+// Prints the table, and writes the JSON to a file; "-" prints the JSON instead; "" writes none.
+// A complete message when the file cannot be written.
+std::optional<std::string> write_summary(const RunSummary& summary, const std::string& json_path);
 
 }  // namespace zonepack

@@ -83,5 +83,6 @@ const Fields<PoseFilterSettings>& pose_fields();
 const Fields<TrackerSettings>& zones_fields();
 const Fields<PreloadSettings>& preload_fields();
 const Fields<CycleSettings>& cycle_fields();
+const Fields<RealtimeSettings>& realtime_fields();
 
 }  // namespace zonepack

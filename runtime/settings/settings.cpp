@@ -33,6 +33,14 @@ void check_together(const Settings& settings, FaultList& faults) {
   if (settings.pose.history_s / settings.pose.history_step_s > 10'000) {
     faults.add(nowhere, "pose.history", "must not be over 10000 times pose.history_step");
   }
+  if (settings.realtime.loader_priority >= settings.realtime.priority) {
+    faults.add(nowhere, "realtime.loader_priority", "must be below realtime.priority");
+  }
+  const std::string& cpu = settings.realtime.cpu;
+  if (cpu.size() > 4 || cpu.find_first_not_of("0123456789") != std::string::npos) {
+    faults.add(nowhere, "realtime.cpu",
+               "\"" + cpu + "\" is no number of a processor; expected 0, 1, ...");
+  }
   if (settings.odometry.wheels.timeout_s < 2 / settings.cycle.period_hz) {
     faults.add(nowhere, "odometry.timeout", "must be at least two cycles (cycle.period_hz)");
   }
@@ -50,6 +58,7 @@ void read_file(const YAML::Node& root, const std::string& path, Settings& settin
   read_section(file, "pose", pose_fields(), settings.pose, faults);
   read_section(file, "zones", zones_fields(), settings.zones, faults);
   read_section(file, "preload", preload_fields(), settings.preload, faults);
+  read_section(file, "realtime", realtime_fields(), settings.realtime, faults);
   file.finish();
   check_together(settings, faults);
   if (!settings.map.path.empty()) settings.map.path = beside(path, settings.map.path);

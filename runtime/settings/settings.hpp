@@ -33,6 +33,7 @@ struct MemorySettings {
   std::uint64_t max_signatures = 0;  // 0: no such limit
   PayloadChoice payload;
   std::vector<std::string> pinned;  // names of zones that stay
+  double lease_s = 2;               // how long a reader may hold a zone
 };
 
 // How fast loading is taken to be, for preloading and for simulated time.
@@ -64,6 +65,14 @@ struct CycleSettings {
   std::uint32_t most_frames = 64;  // taken from the bus in one cycle
 };
 
+// How the threads of `zoned run` run.
+struct RealtimeSettings {
+  std::uint32_t priority = 80;         // SCHED_FIFO, control
+  std::uint32_t loader_priority = 40;  // SCHED_FIFO, loader
+  std::string cpu;                     // the control thread's only processor; empty: any
+  bool lock_memory = true;
+};
+
 struct Settings {
   MapSettings map;
   MemorySettings memory;
@@ -74,6 +83,7 @@ struct Settings {
   TrackerSettings zones;
   PreloadSettings preload;
   CycleSettings cycle;
+  RealtimeSettings realtime;
 };
 
 struct LoadedSettings {

@@ -100,7 +100,7 @@ std::string settings_reference() {
          head("can.signals.NAME.multiplexer") + rows(multiplex_fields()) + head("odometry") +
          rows(wheel_fields()) + rows(odometry_fields()) + head("pose") + rows(pose_fields()) +
          head("zones") + rows(zones_fields()) + head("preload") + rows(preload_fields()) +
-         head("cycle") + rows(cycle_fields());
+         head("cycle") + rows(cycle_fields()) + head("realtime") + rows(realtime_fields());
 }
 
 }  // namespace zonepack

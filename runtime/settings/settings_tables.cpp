@@ -22,6 +22,7 @@ const Fields<MemorySettings>& memory_fields() {
        "most signatures resident at once, 0 for no limit; --max-signatures"},
       {"payload", &S::payload, 0, 0, "", "what is loaded of every signature"},
       {"pinned", &S::pinned, 0, 0, "", "names of zones that are never unloaded"},
+      {"lease", &S::lease_s, 0.01, 60, "s", "how long a reader may keep a zone from being evicted"},
   };
   return fields;
 }
@@ -175,6 +176,18 @@ const Fields<CycleSettings>& cycle_fields() {
   static const Fields<S> fields = {
       {"period_hz", &S::period_hz, 1, 1000, "Hz", "control cycles per second"},
       {"most_frames", &S::most_frames, 1, 4096, "", "CAN frames taken in one cycle; others wait"},
+  };
+  return fields;
+}
+
+const Fields<RealtimeSettings>& realtime_fields() {
+  using S = RealtimeSettings;
+  static const Fields<S> fields = {
+      {"priority", &S::priority, 1, 99, "", "SCHED_FIFO priority of the control thread"},
+      {"loader_priority", &S::loader_priority, 1, 98, "",
+       "of the loader; must be below the control thread's"},
+      {"cpu", &S::cpu, 0, 0, "", "number of the control thread's only processor; empty for any"},
+      {"lock_memory", &S::lock_memory, 0, 0, "", "keep all pages in memory (mlockall)"},
   };
   return fields;
 }

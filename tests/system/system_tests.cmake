@@ -4,6 +4,9 @@
 add_test(NAME system/include_arrows
          COMMAND ${CMAKE_CURRENT_LIST_DIR}/include_arrows_test.sh ${PROJECT_SOURCE_DIR})
 if(TARGET zonepack AND TARGET zoned)
+  add_test(NAME system/run
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/run_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
   add_test(NAME system/replay
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/replay_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "runtime/event.hpp"
+#include "runtime/map/catalog.hpp"
+
+namespace zonepack {
+
+// Tells people, on standard error, of events that they should do something about: a line each, with
+// what to do. Passes all events on.   Threads: one; not for a control thread.
+class EventTeller final : public EventSink {
+ public:
+  // Both must outlive this object.
+  EventTeller(const Catalog& catalog, EventSink& next) : catalog_(catalog), next_(next) {}
+
+  void on_event(const Event& event) noexcept override;
+
+ private:
+  const Catalog& catalog_;
+  EventSink& next_;
+};
+
+}  // namespace zonepack

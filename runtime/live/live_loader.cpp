@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/live/live_loader.hpp"
+
+#include "platform/base/require.hpp"
+#include "platform/clock.hpp"
+#include "runtime/map/loader.hpp"
+
+namespace zonepack {
+namespace {
+
+constexpr std::int64_t kLongestSleep_ns = 1'000'000'000;
+
+std::uint64_t key_of(const LoadRequest& request) noexcept {
+  return (std::uint64_t{request.zone} + 1) << 32 | request.generation;
+}
+
+// Tells readers where a chunk stands; chunks come in the order in which they fill the slots.
+class ChunkPlaces {
+ public:
+  ChunkPlaces(SharedMap& map, const std::vector<SlotIndex>& slots) : map_(map), slots_(slots) {
+    for (const SlotIndex slot : slots) {
+      for (SharedChunk& chunk : map.chunks(slot)) chunk = {};
+    }
+  }
+
+  void add(const ChunkRef& chunk) {
+    while (!holds(chunk.bytes.data())) {
+      ++slot_;
+      chunk_ = 0;
+      ZP_REQUIRE(slot_ < slots_.size());
+    }
+    ZP_REQUIRE(chunk_ < kMaxChunksPerSlot);
+    const auto offset = chunk.bytes.data() - map_.slot(slots_[slot_]).data();
+    map_.chunks(slots_[slot_])[chunk_++] = {
+        static_cast<std::uint8_t>(chunk.kind),
+        static_cast<std::uint8_t>(static_cast<ByteCount>(offset) / kChunkAlignment),
+        static_cast<std::uint16_t>(chunk.bytes.size())};
+  }
+
+ private:
+  bool holds(const std::byte* place) const {
+    const auto slot = map_.slot(slots_[slot_]);
+    return place >= slot.data() && place < slot.data() + slot.size();
+  }
+
+  SharedMap& map_;
+  const std::vector<SlotIndex>& slots_;
+  std::size_t slot_ = 0;
+  std::size_t chunk_ = 0;
+};
+
+}  // namespace
+
+LiveLoader::LiveLoader(const Catalog& catalog, SharedMap& map)
+    : catalog_(catalog),
+      map_(map),
+      pool_(map.links()),
+      inbox_(map.slot_count() + 4),
+      outbox_(4),
+      read_buffer_(kReadBufferBytes) {
+  slots_.reserve(map.slot_count());
+  places_.reserve(map.slot_count());
+}
+
+LiveLoader::~LiveLoader() { stop(); }
+
+Result<void> LiveLoader::start(const ThreadSettings& settings, bool allow_ordinary) {
+  auto thread = Thread::start(settings, allow_ordinary, [this] { run(); });
+  if (!thread) return thread.error();
+  thread_ = std::move(thread).value();
+  return {};
+}
+
+void LiveLoader::stop() noexcept {
+  stop_.store(true);
+  wakeup_.post();
+  thread_.join();
+}
+
+void LiveLoader::load(const LoadRequest& request) noexcept {
+  under_way_ = request;
+  ZP_REQUIRE(inbox_.push({Message::Kind::kLoad, request, {}}));
+  wakeup_.post();
+}
+
+void LiveLoader::cancel() noexcept {
+  if (under_way_) cancelled_.store(key_of(*under_way_), std::memory_order_release);
+}
+
+void LiveLoader::take_back(SlotChain slots) noexcept {
+  if (slots.count == 0) return;
+  ZP_REQUIRE(inbox_.push({Message::Kind::kTakeBack, {}, slots}));
+}
+
+std::optional<LoadResult> LiveLoader::poll() noexcept {
+  LoadResult result;
+  if (!outbox_.pop(result)) return std::nullopt;
+  under_way_.reset();
+  return result;
+}
+
+void LiveLoader::run() {
+  while (!stop_.load()) {
+    Message message;
+    while (inbox_.pop(message)) {
+      if (message.kind == Message::Kind::kTakeBack) {
+        pool_.give_back(message.slots);
+      } else {
+        ZP_REQUIRE(outbox_.push(fill(message.request)));
+      }
+    }
+    wakeup_.wait_until(monotonic_ns() + kLongestSleep_ns);
+  }
+}
+
+LoadResult LiveLoader::fill(const LoadRequest& request) {
+  LoadResult result{request.zone, request.generation, {}, {}};
+  ZP_REQUIRE(pool_.take(request.slots, result.slots));
+  result.error = read_zone(request, result.slots);
+  if (result.error.code != ErrorCode::kOk) {
+    pool_.give_back(result.slots);
+    if (result.error.code != ErrorCode::kCancelled) ++failed_loads_;
+  }
+  return result;
+}
+
+bool LiveLoader::cancelled(const LoadRequest& request) const noexcept {
+  return stop_.load(std::memory_order_relaxed) ||
+         cancelled_.load(std::memory_order_acquire) == key_of(request);
+}
+
+Error LiveLoader::read_zone(const LoadRequest& request, const SlotChain& slots) {
+  slots_.clear();
+  places_.clear();
+  for (SlotIndex slot = slots.head; slot != kNoSlot; slot = pool_.next(slot)) {
+    slots_.push_back(slot);
+    places_.push_back(map_.slot(slot).data());
+  }
+  if (cancelled(request)) return {ErrorCode::kCancelled};
+  auto load = ZoneLoad::begin(catalog_, request.zone, places_, read_buffer_);
+  if (!load) return load.error();
+  ChunkPlaces chunks(map_, slots_);
+  for (;;) {
+    if (cancelled(request)) return {ErrorCode::kCancelled};
+    const Result<bool> more = load->step();
+    if (!more) return more.error();
+    if (!*more) break;
+    chunks.add(load->chunks().back());
+  }
+  bytes_loaded_ += load->stored_bytes_read();
+  return {};
+}
+
+}  // namespace zonepack

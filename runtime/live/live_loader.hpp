@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "platform/realtime.hpp"
+#include "platform/spsc_queue.hpp"
+#include "platform/wakeup.hpp"
+#include "runtime/map/catalog.hpp"
+#include "runtime/memory/shared_map.hpp"
+#include "runtime/memory/slot_pool.hpp"
+#include "runtime/zone_loader.hpp"
+
+namespace zonepack {
+
+// The robot's loader: a thread that reads packs into the slots of the shared map, chunk by chunk,
+// and gives up between two chunks when asked to.
+//
+// Threads: the calls of ZoneLoader by the control thread; the queues have room for every slot and
+// every load, so posting cannot fail. The thread owns the free slots, and those being filled.
+class LiveLoader final : public ZoneLoader {
+ public:
+  // `catalog` and `map` must outlive this object.
+  LiveLoader(const Catalog& catalog, SharedMap& map);
+  ~LiveLoader() override;
+
+  Result<void> start(const ThreadSettings& settings, bool allow_ordinary);
+  // Gives up the load under way and ends the thread.
+  void stop() noexcept;
+
+  void load(const LoadRequest& request) noexcept override;
+  void cancel() noexcept override;
+  void take_back(SlotChain slots) noexcept override;
+  std::optional<LoadResult> poll() noexcept override;
+
+  // Of loads that were completed. Any thread.
+  std::uint64_t bytes_loaded() const noexcept { return bytes_loaded_.load(); }
+  // The zone whose pack could not be loaded last, and why; any thread.
+  std::uint64_t failed_loads() const noexcept { return failed_loads_.load(); }
+  bool is_realtime() const noexcept { return thread_.is_realtime(); }
+
+ private:
+  struct Message {
+    enum class Kind : std::uint8_t { kLoad, kTakeBack };
+    Kind kind = Kind::kLoad;
+    LoadRequest request;
+    SlotChain slots;
+  };
+
+  void run();
+  LoadResult fill(const LoadRequest& request);
+  Error read_zone(const LoadRequest& request, const SlotChain& slots);
+  bool cancelled(const LoadRequest& request) const noexcept;
+
+  const Catalog& catalog_;
+  SharedMap& map_;
+  SlotPool pool_;
+  SpscQueue<Message> inbox_;
+  SpscQueue<LoadResult> outbox_;
+  std::optional<LoadRequest> under_way_;     // the control thread's
+  std::atomic<std::uint64_t> cancelled_{0};  // (zone + 1) << 32 | generation
+  std::atomic<bool> stop_{false};
+  std::atomic<std::uint64_t> bytes_loaded_{0};
+  std::atomic<std::uint64_t> failed_loads_{0};
+  std::vector<SlotIndex> slots_;
+  std::vector<std::byte*> places_;
+  std::vector<std::byte> read_buffer_;
+  Wakeup wakeup_;
+  Thread thread_;
+};
+
+}  // namespace zonepack

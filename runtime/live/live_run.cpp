@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/live/live_run.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+
+#include "platform/clock.hpp"
+#include "platform/realtime.hpp"
+#include "platform/signals.hpp"
+#include "runtime/event_log.hpp"
+#include "runtime/live/control_loop.hpp"
+#include "runtime/live/event_teller.hpp"
+#include "runtime/live/live_loader.hpp"
+#include "runtime/live/log_feed.hpp"
+#include "runtime/live/scribe.hpp"
+#include "runtime/memory/shared_map.hpp"
+#include "runtime/replay/run_recorder.hpp"
+
+namespace zonepack {
+namespace {
+
+constexpr std::size_t kNotes = 2048;
+constexpr std::int64_t kWatch_ns = 20'000'000;
+
+double us(std::int64_t ns) { return static_cast<double>(ns) / 1000; }
+
+LiveFigures::Timing timing_of(const Histogram& histogram) {
+  const TimingFigures figures = histogram.figures();
+  return {us(figures.p50), us(figures.p99), us(figures.p9999), us(figures.max)};
+}
+
+// Page-aligned memory of the process itself.
+class MapMemory {
+ public:
+  explicit MapMemory(ByteCount bytes)
+      : block_(static_cast<std::byte*>(std::aligned_alloc(4096, bytes)), std::free), bytes_(bytes) {
+    ZP_REQUIRE(block_ != nullptr);
+    std::memset(block_.get(), 0, bytes);
+  }
+  std::span<std::byte> bytes() noexcept { return {block_.get(), bytes_}; }
+
+ private:
+  std::unique_ptr<std::byte, decltype(&std::free)> block_;
+  ByteCount bytes_;
+};
+
+std::uint32_t zones_with_room_for_another_map(std::size_t zones) {
+  return static_cast<std::uint32_t>(zones + std::max<std::size_t>(zones / 4, 16));
+}
+
+SharedMap laid_out(std::span<std::byte> memory, std::uint32_t zones, std::uint32_t slots) {
+  auto map = SharedMap::lay_out(memory, zones, slots);
+  ZP_REQUIRE(map.ok());
+  return std::move(map).value();
+}
+
+}  // namespace
+
+// In the order in which the parts refer to each other.
+struct LiveRun::Parts {
+  Parts(RunInputs& run_inputs, const DrivenMap& driven, const LiveOptions& run_options)
+      : inputs(run_inputs),
+        map(driven),
+        options(run_options),
+        period_ns(map_terms({}, inputs.settings).period_ns),
+        zone_capacity(zones_with_room_for_another_map(map.needs.size())),
+        memory_block(shared_map_bytes(zone_capacity, map.slots)),
+        shared(laid_out(memory_block.bytes(), zone_capacity, map.slots)),
+        memory(map.needs.size(), map.limits),
+        loader(map.catalog, shared),
+        notes(kNotes),
+        log([this](ZoneId zone) { return std::string_view(map.graph.name(zone)); }),
+        truth(inputs.truth ? &*inputs.truth : nullptr),
+        teller(map.catalog, log),
+        recorder(map.graph, map.needs, truth, period_ns, map.limits, teller),
+        scribe(notes, recorder),
+        events(notes, nullptr, overload) {}
+
+  bool open_source(std::string& fault);
+  bool place_at_start(std::string& fault);
+  bool start_threads(std::string& fault);
+  ControlSettings control_settings() const;
+  void control() noexcept;
+
+  RunInputs& inputs;
+  const DrivenMap& map;
+  LiveOptions options;
+  std::int64_t period_ns;
+  std::uint32_t zone_capacity;
+  MapMemory memory_block;
+  SharedMap shared;
+  Residency memory;
+  LiveLoader loader;
+  SpscQueue<LiveNote> notes;
+  EventLog log;
+  const TruthTrack* truth;
+  EventTeller teller;
+  RunRecorder recorder;
+  Scribe scribe;
+  OverloadCounters overload;
+  EventFanOut events;
+  Seqlock<LiveStatus> status;
+  std::unique_ptr<CanLogReader> can_log;
+  std::unique_ptr<LogFeed> feed;
+  std::unique_ptr<Cycle> cycle;
+  std::unique_ptr<ControlLoop> loop;
+  Thread control_thread;
+  std::atomic<bool> control_ended{false};
+  std::atomic<int> lock_error{0};
+};
+
+bool LiveRun::Parts::open_source(std::string& fault) {
+  can_log = std::make_unique<CanLogReader>(options.source.name, inputs.settings.can.interface);
+  if (const auto opened = can_log->open(); !opened) {
+    fault = can_log->explain(opened.error());
+    return false;
+  }
+  feed = std::make_unique<LogFeed>(*can_log, std::move(inputs.corrections), period_ns, notes);
+  if (const auto started = feed->start(); !started) {
+    fault = options.source.name + ": cannot be played: " + to_string(started.error().code);
+    return false;
+  }
+  return true;
+}
+
+bool LiveRun::Parts::place_at_start(std::string& fault) {
+  std::optional<Pose2> start;
+  if (options.start.kind == StartChoice::Kind::kPose) start = options.start.pose;
+  if (options.start.kind == StartChoice::Kind::kTruth) {
+    start = first_truth(truth, feed->start_ns());
+    if (!start) {
+      fault = "--start truth: the truth file does not cover the start of the CAN log";
+      return false;
+    }
+  }
+  if (start) cycle->start_at(feed->start_ns(), *start);
+  return true;
+}
+
+ControlSettings LiveRun::Parts::control_settings() const {
+  ControlSettings settings;
+  settings.wall_period_ns = std::max<std::int64_t>(
+      1, static_cast<std::int64_t>(static_cast<double>(period_ns) / options.source.speed + 0.5));
+  settings.may_skip = false;
+  settings.judge_deadlines = options.source.speed == 1;
+  settings.most_frames = inputs.settings.cycle.most_frames;
+  return settings;
+}
+
+void LiveRun::Parts::control() noexcept {
+  // Behind the making of this thread, so that its stack is locked too.
+  if (inputs.settings.realtime.lock_memory) {
+    const auto locked = lock_memory_now();
+    lock_error.store(locked ? 0 : static_cast<int>(locked.error().detail));
+  }
+  if (lock_error.load() == 0 || options.allow_degraded) loop->run();
+  control_ended.store(true);
+}
+
+bool LiveRun::Parts::start_threads(std::string& fault) {
+  const RealtimeSettings& realtime = inputs.settings.realtime;
+  const auto refused = [&](const char* what, const Error& error) {
+    fault = std::string(what) + ": " + std::strerror(static_cast<int>(error.detail)) +
+            "; run as root, give the process CAP_SYS_NICE and CAP_IPC_LOCK (LimitRTPRIO and "
+            "LimitMEMLOCK of its unit), or go on without by --allow-degraded";
+    return false;
+  };
+  if (const auto started = scribe.start(); !started) return refused("scribe", started.error());
+  const ThreadSettings for_loader{.name = "zoned-loader",
+                                  .fifo_priority = static_cast<int>(realtime.loader_priority)};
+  if (const auto started = loader.start(for_loader, options.allow_degraded); !started) {
+    return refused("realtime.loader_priority", started.error());
+  }
+  const ThreadSettings for_control{.name = "zoned-control",
+                                   .fifo_priority = static_cast<int>(realtime.priority),
+                                   .cpu = realtime.cpu.empty() ? -1 : std::stoi(realtime.cpu)};
+  auto started = Thread::start(for_control, options.allow_degraded, [this] { control(); });
+  if (!started) return refused("realtime.priority", started.error());
+  control_thread = std::move(started).value();
+  return true;
+}
+
+LiveRun::LiveRun(RunInputs& inputs, const DrivenMap& map, const LiveOptions& options)
+    : parts_(std::make_unique<Parts>(inputs, map, options)) {}
+
+LiveRun::~LiveRun() {
+  if (parts_->loop) parts_->loop->stop();
+  if (parts_->feed) parts_->feed->stop();
+}
+
+bool LiveRun::start(std::string& fault) {
+  Parts& p = *parts_;
+  if (!p.options.events.empty()) {
+    if (const auto opened = p.log.write_to(p.options.events); !opened) {
+      fault = p.options.events + ": cannot be written: " + to_string(opened.error().code);
+      return false;
+    }
+  }
+  const auto begun = p.shared.begin_map(static_cast<std::uint32_t>(p.map.needs.size()));
+  ZP_REQUIRE(begun.ok());
+  if (!p.map.pin(p.memory, fault) || !p.open_source(fault)) return false;
+  p.cycle = std::make_unique<Cycle>(cycle_config(p.inputs.settings),
+                                    CycleParts{p.map.graph, p.map.needs, p.map.load_s, p.map.pinned,
+                                               p.memory, p.loader, p.events, &p.shared});
+  if (!p.place_at_start(fault)) return false;
+  p.loop = std::make_unique<ControlLoop>(p.control_settings(),
+                                         ControlPorts{.clock = *p.feed,
+                                                      .bus = p.feed->bus(),
+                                                      .cycle = *p.cycle,
+                                                      .memory = p.memory,
+                                                      .loader = p.loader,
+                                                      .notes = p.events,
+                                                      .overload = p.overload,
+                                                      .logged_corrections = p.feed->corrections(),
+                                                      .status = p.status});
+  return p.start_threads(fault);
+}
+
+void LiveRun::wait() {
+  while (!parts_->control_ended.load()) {
+    if (next_signal(monotonic_ns() + kWatch_ns) == Signal::kStop) parts_->loop->stop();
+  }
+}
+
+std::optional<RunSummary> LiveRun::finish(std::string& fault) {
+  Parts& p = *parts_;
+  p.control_thread.join();
+  if (const int error = p.lock_error.load(); error != 0 && !p.options.allow_degraded) {
+    fault = std::string("realtime.lock_memory: ") + std::strerror(error) +
+            "; raise LimitMEMLOCK (ulimit -l) above the budget, or go on by --allow-degraded";
+    return std::nullopt;
+  }
+  p.cycle->finish();
+  p.loader.stop();
+  p.feed->stop();
+  p.scribe.stop();
+  auto hash = p.log.finish();
+  if (!hash) {
+    fault = p.options.events + ": cannot be written: " + to_string(hash.error().code);
+    return std::nullopt;
+  }
+  const LiveStatus& last = p.loop->last_status();
+  RunSummary summary;
+  p.recorder.summarise(summary);
+  summary.bytes_loaded = p.loader.bytes_loaded();
+  summary.zone_switches = last.state.zone_switches;
+  summary.can_frames = last.can_frames;
+  summary.can_rejected = last.odometry.rejected;
+  summary.corrections_used = last.filter.used;
+  summary.corrections_rejected = last.filter.rejected;
+  summary.event_log_hash = std::move(hash).value();
+  LiveFigures live;
+  live.process_peak_bytes = process_peak_bytes();
+  const ByteCount mapped = p.map.limits.fixed + p.map.slots * p.map.limits.slot_bytes;
+  live.overhead_bytes = live.process_peak_bytes - std::min(mapped, live.process_peak_bytes);
+  live.minor_faults = last.minor_faults;
+  live.major_faults = last.major_faults;
+  live.allocations = p.loop->allocations();
+  live.missed_deadlines = last.overload.missed_deadlines;
+  live.cycle_us = timing_of(p.loop->work());
+  live.wakeup_us = timing_of(p.loop->wakeup());
+  live.lost_events = last.overload.lost_events;
+  live.realtime = p.control_thread.is_realtime();
+  live.memory_locked = p.inputs.settings.realtime.lock_memory && p.lock_error.load() == 0;
+  summary.live = live;
+  return summary;
+}
+
+const CanLogSummary* LiveRun::log_summary() const {
+  return parts_->can_log ? &parts_->can_log->summary() : nullptr;
+}
+
+}  // namespace zonepack

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "platform/can_log.hpp"
+#include "runtime/live/can_source.hpp"
+#include "runtime/replay/driven_map.hpp"
+#include "runtime/replay/run_inputs.hpp"
+#include "runtime/replay/run_summary.hpp"
+
+namespace zonepack {
+
+struct LiveOptions {
+  CanSourceChoice source;
+  StartChoice start;
+  std::string events;  // file; empty: none
+  bool allow_degraded = false;
+};
+
+// A run of the robot's threads: control, loader, scribe, and what feeds them.
+//
+// Threads: all calls by the main thread, whose signals must be held (platform/signals.hpp).
+class LiveRun {
+ public:
+  // The inputs and the map must outlive this object.
+  LiveRun(RunInputs& inputs, const DrivenMap& map, const LiveOptions& options);
+  ~LiveRun();
+
+  // Reserves and locks memory and starts the threads. False when something is refused; `fault`
+  // says what in a complete message, and nothing runs.
+  bool start(std::string& fault);
+
+  // Until the source ends or a signal asks to stop.
+  void wait();
+
+  // Ends the threads in order, and says how it went. Once, after start(); nothing with a complete
+  // message in `fault` when results could not be written.
+  std::optional<RunSummary> finish(std::string& fault);
+
+  // Of a log that was played: what was wrong with it.
+  const CanLogSummary* log_summary() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace zonepack

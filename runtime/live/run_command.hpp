@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "runtime/live/can_source.hpp"
+#include "runtime/replay/run_inputs.hpp"
+
+namespace zonepack {
+
+// What `zoned run` is told; empty paths: not given.
+struct RunArguments : RunChoices {
+  CanSourceChoice source;
+  std::string events, json;  // json "-": standard output
+  bool allow_degraded = false;
+};
+
+// Drives the robot's threads until the source ends or SIGTERM or SIGINT comes. The summary goes to
+// standard output, messages to standard error. Returns the exit code: 0, or 1 when something could
+// not be read, held, granted or written, or a limit was exceeded; 2 for arguments that do not go
+// together.
+int run_live(const RunArguments& arguments);
+
+}  // namespace zonepack

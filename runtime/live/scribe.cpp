@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/live/scribe.hpp"
+
+#include "platform/clock.hpp"
+
+namespace zonepack {
+namespace {
+
+constexpr std::int64_t kTurn_ns = 2'000'000;
+
+}  // namespace
+
+Result<void> Scribe::start() {
+  auto thread = Thread::start({.name = "zoned-scribe"}, true, [this] { run(); });
+  if (!thread) return thread.error();
+  thread_ = std::move(thread).value();
+  return {};
+}
+
+void Scribe::stop() noexcept {
+  stop_.store(true);
+  thread_.join();
+}
+
+void Scribe::run() {
+  for (bool last = false; !last;) {
+    last = stop_.load();
+    drain();
+    for (const auto& task : tasks_) task();
+    if (!last) sleep_until_ns(monotonic_ns() + kTurn_ns);
+  }
+}
+
+void Scribe::drain() {
+  LiveNote note;
+  while (notes_.pop(note)) {
+    if (note.kind == LiveNote::Kind::kEvent) {
+      recorder_.on_event(note.event);
+    } else {
+      recorder_.after_cycle(note.cycle);
+    }
+  }
+}
+
+}  // namespace zonepack

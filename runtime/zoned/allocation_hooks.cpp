@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The heap of glibc, with a note to AllocationWatch in front. Linked into zoned; not together with
+// sanitizers, which bring a heap of their own.
+#include <cerrno>
+#include <cstddef>
+
+#include "platform/allocation_watch.hpp"
+
+using zonepack::allocation_watch::note;
+
+extern "C" {
+
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* block, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+void __libc_free(void* block);
+
+void* malloc(std::size_t size) {
+  note();
+  return __libc_malloc(size);
+}
+
+void* calloc(std::size_t count, std::size_t size) {
+  note();
+  return __libc_calloc(count, size);
+}
+
+void* realloc(void* block, std::size_t size) {
+  note();
+  return __libc_realloc(block, size);
+}
+
+void* memalign(std::size_t alignment, std::size_t size) {
+  note();
+  return __libc_memalign(alignment, size);
+}
+
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  note();
+  return __libc_memalign(alignment, size);
+}
+
+int posix_memalign(void** block, std::size_t alignment, std::size_t size) {
+  note();
+  void* const made = __libc_memalign(alignment, size);
+  if (made == nullptr) return ENOMEM;
+  *block = made;
+  return 0;
+}
+
+void free(void* block) {
+  if (block != nullptr) note();
+  __libc_free(block);
+}
+
+}  // extern "C"

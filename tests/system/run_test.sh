@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# usage: run_test.sh BIN SOURCE: the robot's own threads drive the sample map through scenario 1, played from its log.
+set -euo pipefail
+bin=$1 data=$2/tests/data config=$2/config/agilex.yaml
+run=$data/scenario1_loop
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+fail() { echo "$*" >&2; exit 1; }
+
+live() {  # MAP SPEED OPTION...
+  local map=$1 speed=$2
+  shift 2
+  $how "$bin/zoned" run --config "$config" --map "$map" --can "log:$run/can0.log@$speed" \
+    --corrections "$run/corrections.txt" --truth "$run/base_groundtruth.txt" "${privilege[@]}" "$@"
+}
+
+holds() {  # FILE JQ-CONDITION
+  jq -e "$2" "$1" >/dev/null || fail "$1 does not hold $2: $(cat "$1")"
+}
+
+exits() {  # CODE COMMAND...
+  local want=$1 got=0
+  shift
+  "$@" >out.txt 2>&1 || got=$?
+  ((got == want)) || fail "$*: exit code $got, not $want: $(cat out.txt)"
+}
+
+says() { grep -q -- "$1" out.txt || fail "no word of '$1' in: $(cat out.txt)"; }
+
+how= privilege=()
+if ! chrt -f 1 true 2>/dev/null; then
+  echo "no privilege for SCHED_FIFO here: run with --allow-degraded"
+  privilege=(--allow-degraded)
+fi
+"$bin/zonepack" build --db "$data/hospital-small.db" --zones "$data/zones.geojson" --out map \
+  --payload features,scan,grid >/dev/null 2>&1
+smallest=$("$bin/zonepack" plan map --json - 2>/dev/null | jq .smallest_budget_bytes)
+
+live map 200 --budget "$smallest" --json live.json --events live.jsonl >out.txt 2>&1 || fail "$(cat out.txt)"
+holds live.json ".budget_violations == 0 and .peak_charged_bytes <= $smallest and .cycles > 10000"
+holds live.json '.minor_faults == 0 and .major_faults == 0 and .allocations == 0 and .lost_events == 0'
+holds live.json '.process_peak_bytes > .overhead_bytes and .overhead_bytes > 0'
+holds live.json '.missed_deadlines == 0 and (.cycle_us, .wakeup_us | has("p50") and has("p99") and has("p9999") and has("max"))'
+[[ $(jq -r .event_log_hash live.json) == "$(b2sum -l 256 live.jsonl | cut -d' ' -f1)" ]] || fail "hash"
+
+# The same cycle as in a replay: where the robot believes to be does not depend on how fast zones load.
+"$bin/zoned" replay --config "$config" --map map --can "$run/can0.log" --corrections "$run/corrections.txt" \
+  --truth "$run/base_groundtruth.txt" --budget "$smallest" --json replay.json --events replay.jsonl >out.txt
+route='select(.event == "zone_entered") | [.cycle, .zone, .x_mm, .y_mm]'
+cmp <(jq -c "$route" live.jsonl) <(jq -c "$route" replay.jsonl) || fail "another route than in the replay"
+[[ $(jq .cycles live.json) == "$(jq .cycles replay.json)" ]] || fail "another number of cycles"
+
+# SIGTERM ends a run in order, with its results.
+how=exec live map 1 --json stopped.json --events stopped.jsonl >out.txt 2>&1 &
+pid=$!
+sleep 1
+kill -TERM $pid
+wait $pid || fail "SIGTERM: exit code $?: $(cat out.txt)"
+holds stopped.json '.cycles > 0 and .cycles < 10000'
+tail -1 stopped.jsonl | grep -q '"event":"end"' || fail "no end of the event log"
+
+# A damaged pack costs its zone.
+cp -r map damaged
+rm damaged/C2-*.zpk
+exits 0 live damaged 200 --json damaged.json
+says "zone C2 cannot be loaded"
+holds damaged.json '.budget_violations == 0 and .signatures_loaded > 0'
+
+exits 1 live nowhere 1
+says "manifest.zpm"
+exits 1 live map 1 --budget 400KiB
+says "$smallest"
+exits 2 "$bin/zoned" run --config "$config" --map map --can can0
+exits 2 "$bin/zoned" run --config "$config" --map map
+exits 1 "$bin/zoned" run --config "$config" --map map --can log:/nowhere.log
+says "/nowhere.log"
+echo "the robot's threads keep what the replay promises"

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/live/control_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <vector>
+
+#include "platform/clock.hpp"
+#include "platform/sim/sim_can_bus.hpp"
+#include "runtime/replay/modelled_loader.hpp"
+#include "tests/support/rooms.hpp"
+#include "tests/support/sample_catalog.hpp"
+
+namespace zonepack {
+namespace {
+
+constexpr std::int64_t kPeriod_ns = 100'000;
+
+// Cycles as fast as they come, on a time of their own; the run ends after some.
+class CountedClock final : public RunClock {
+ public:
+  std::int64_t cycle_time_ns(std::uint64_t cycle, std::int64_t) noexcept override {
+    now_ns = static_cast<std::int64_t>(cycle) * 10'000'000;
+    bus.advance_to(now_ns);
+    loader->advance_to(now_ns);
+    if (cycle == late_cycle) sleep_until_ns(monotonic_ns() + 5 * kPeriod_ns);
+    return now_ns;
+  }
+  bool await_inputs(std::uint64_t) noexcept override { return true; }
+  bool more() noexcept override { return --left > 0; }
+  std::int64_t offset_ns() noexcept override { return 7; }
+
+  SimCanBus bus;
+  ModelledLoader* loader = nullptr;
+  std::int64_t now_ns = 0;
+  std::uint64_t late_cycle = UINT64_MAX;
+  int left = 20;
+};
+
+class Inputs final : public InputSink {
+ public:
+  void on_inputs(std::uint64_t cycle, const CycleInput& input,
+                 std::int64_t offset) noexcept override {
+    if (cycle >= frames.size()) return;
+    frames[cycle] = input.frames.size();
+    corrections[cycle] = input.corrections.size();
+    commands[cycle] = input.commands.size();
+    offset_ns = offset;
+  }
+  std::array<std::size_t, 64> frames{}, corrections{}, commands{};
+  std::int64_t offset_ns = 0;
+};
+
+class Loop : public testing::Test {
+ protected:
+  Loop() { clock.loader = &loader; }
+
+  void run(ControlSettings settings = {}) {
+    settings.wall_period_ns = kPeriod_ns;
+    settings.most_frames = 4;
+    ControlLoop loop(settings, {.clock = clock,
+                                .bus = clock.bus,
+                                .cycle = cycle,
+                                .memory = memory,
+                                .loader = loader,
+                                .notes = notes,
+                                .overload = overload,
+                                .logged_corrections = logged,
+                                .poses = &poses,
+                                .commands = &commands,
+                                .replies = &replies,
+                                .recorder = &inputs,
+                                .status = status});
+    loop.run();
+    cycles = loop.cycles();
+  }
+
+  const ZoneGraph graph = testing_support::three_rooms();
+  const std::vector<ZoneNeed> needs = std::vector<ZoneNeed>(3, ZoneNeed{4, 10});
+  const std::vector<LoadWork> work = std::vector<LoadWork>(3, LoadWork{100, 0});
+  const std::vector<float> load_s = std::vector<float>(3, 0.12f);
+  Residency memory{3, {800, 0, 100, 0, {8, 20}, 1'000'000'000}};
+  ModelledLoader loader{8, work, {1000, 1000}, nullptr};
+  CountedClock clock;
+  SpscQueue<LiveNote> queue{64};
+  SpscQueue<Event> service{2};
+  OverloadCounters overload;
+  EventFanOut notes{queue, &service, overload};
+  Cycle cycle{testing_support::sample_robot(), {graph, needs, load_s, {}, memory, loader, notes}};
+  SpscQueue<PoseCorrection> logged{8}, poses{64};
+  SpscQueue<Command> commands{64};
+  SpscQueue<CommandReply> replies{8};
+  Seqlock<LiveStatus> status;
+  Inputs inputs;
+  std::uint64_t cycles = 0;
+};
+
+TEST_F(Loop, RunsUntilTheClockSaysThatItIsOverAndTellsHowItStands) {
+  run();
+  EXPECT_EQ(cycles, 20u);
+  const LiveStatus last = status.load();
+  EXPECT_EQ(last.state.cycles, 20u);
+  EXPECT_EQ(last.now_ns, 190'000'000);
+  EXPECT_EQ(last.clock_offset_ns, 7);
+  EXPECT_EQ(inputs.offset_ns, 7);
+  EXPECT_EQ(last.budget, 800u);
+}
+
+TEST_F(Loop, LeavesFramesBeyondTheBoundOnTheBusAndCountsTheCycle) {
+  CanFrame frame;
+  frame.stamp_ns = 0;
+  for (int i = 0; i < 10; ++i) clock.bus.push(frame);
+  run();
+  EXPECT_EQ(inputs.frames[0], 4u);
+  EXPECT_EQ(inputs.frames[1], 4u);
+  EXPECT_EQ(inputs.frames[2], 2u);
+  EXPECT_EQ(overload.deferred_frames, 2u);
+  EXPECT_EQ(status.load().can_frames, 10u);
+}
+
+TEST_F(Loop, TakesLoggedCorrectionsWhenTheyAreDueAndPosesOfOthersAtOnce) {
+  PoseCorrection fix;
+  fix.received_ns = 25'000'000;
+  logged.push(fix);
+  poses.push(fix);
+  run();
+  EXPECT_EQ(inputs.corrections[0], 1u);
+  EXPECT_EQ(inputs.corrections[2], 0u);
+  EXPECT_EQ(inputs.corrections[3], 1u);
+}
+
+TEST_F(Loop, TakesAtMostSixteenCommandsACycleAndAnswersEachOnceWhileThereIsRoom) {
+  Command command;
+  command.kind = Command::Kind::kLease;
+  command.zone = 9;
+  for (command.id = 1; command.id <= 20; ++command.id) commands.push(command);
+  run();
+  EXPECT_EQ(inputs.commands[0], 16u);
+  EXPECT_EQ(inputs.commands[1], 4u);
+  EXPECT_EQ(overload.deferred_commands, 1u);
+  EXPECT_EQ(overload.lost_replies, 12u);
+  CommandReply reply;
+  for (std::uint64_t id = 1; replies.pop(reply); ++id) {
+    EXPECT_EQ(reply.id, id);
+    EXPECT_EQ(reply.error.code, ErrorCode::kNotFound);
+  }
+}
+
+TEST_F(Loop, LosesWhatAFullQueueCannotTakeAndCountsIt) {
+  clock.left = 100;  // 100 records and an event for 64 places
+  run();
+  EXPECT_GT(overload.lost_records, 0u);
+  EXPECT_EQ(cycles, 100u);
+}
+
+TEST_F(Loop, LeavesOutPeriodsThatHavePassedWhenARobotIsLate) {
+  clock.late_cycle = 5;
+  run();
+  EXPECT_GE(overload.missed_deadlines, 1u);
+  EXPECT_GE(overload.skipped_periods, 4u);
+}
+
+TEST_F(Loop, RunsEveryCycleOfALogHoweverLate) {
+  clock.late_cycle = 5;
+  ControlSettings settings;
+  settings.may_skip = false;
+  run(settings);
+  EXPECT_EQ(cycles, 20u);
+  EXPECT_GE(overload.missed_deadlines, 1u);
+  EXPECT_EQ(overload.skipped_periods, 0u);
+}
+
+TEST_F(Loop, JudgesNoDeadlineWhenALogIsPlayedAtAnotherSpeed) {
+  clock.late_cycle = 5;
+  ControlSettings settings;
+  settings.judge_deadlines = false;
+  run(settings);
+  EXPECT_EQ(overload.missed_deadlines, 0u);
+}
+
+}  // namespace
+}  // namespace zonepack
