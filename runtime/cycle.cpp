@@ -35,6 +35,16 @@ void Cycle::start_at(std::int64_t now_ns, const Pose2& T_map_base) noexcept {
   filter_.start_at(now_ns, T_map_base);
 }
 
+void Cycle::start_at(std::int64_t now_ns, const Pose2& T_map_base, double sigma_m,
+                     double sigma_rad) noexcept {
+  filter_.start_at(now_ns, T_map_base, sigma_m, sigma_rad);
+}
+
+void Cycle::continue_from(std::uint64_t cycle, std::int64_t start_ns) noexcept {
+  state_.cycles = cycle;
+  start_ns_ = start_ns;
+}
+
 const CycleState& Cycle::run(const CycleInput& input) noexcept {
   const std::int64_t now_ns = input.now_ns;
   if (state_.cycles == 0) start_ns_ = now_ns;

@@ -76,6 +76,13 @@ class Cycle {
 
   // Where the robot may be, told before the first run(): a guess to start from.
   void start_at(std::int64_t now_ns, const Pose2& T_map_base) noexcept;
+  // The same, and how sure that is.
+  void start_at(std::int64_t now_ns, const Pose2& T_map_base, double sigma_m,
+                double sigma_rad) noexcept;
+
+  // Goes on with the numbers and times of a run: the next run() is its cycle `cycle`, start_ns the
+  // time of its cycle 0. Before the first run().
+  void continue_from(std::uint64_t cycle, std::int64_t start_ns) noexcept;
 
   // The first call starts the run.
   const CycleState& run(const CycleInput& input) noexcept;

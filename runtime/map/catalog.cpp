@@ -19,14 +19,18 @@ Result<Catalog> Catalog::open(const std::string& folder, PayloadMask payload) {
   const Result<std::vector<std::byte>> file =
       read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail));
   if (!file) return file.error();
-  const Result<const fb::Manifest*> checked = check_manifest(*file);
+  return read(*file, folder, payload);
+}
+
+Result<Catalog> Catalog::read(ByteSpan file, const std::string& folder, PayloadMask payload) {
+  const Result<const fb::Manifest*> checked = check_manifest(file);
   if (!checked) return checked.error();
   const fb::Manifest& manifest = **checked;
 
   Catalog catalog;
   catalog.folder = folder;
   std::copy(manifest.lineage()->begin(), manifest.lineage()->end(), catalog.lineage.begin());
-  catalog.version = manifest_digest(*file);
+  catalog.version = manifest_digest(file);
   catalog.payload = payload;
   const MapCosts costs = map_costs(manifest, payload);
   catalog.fixed_bytes = costs.fixed_bytes;

@@ -45,6 +45,8 @@ struct Catalog {
 
   // Reads FOLDER/manifest.zpm and checks it whole. kNotFound, kIo and what check_manifest says.
   static Result<Catalog> open(const std::string& folder, PayloadMask payload);
+  // The same from the manifest's bytes, which must be aligned to 8; the folder may be gone.
+  static Result<Catalog> read(ByteSpan manifest, const std::string& folder, PayloadMask payload);
 
   // kNoZone for a name that is not there.
   ZoneId find(std::string_view name) const noexcept;

@@ -107,6 +107,15 @@ void Residency::complete(ZoneId zone, std::uint32_t generation, SlotChain slots)
   put_on_list(zone);
 }
 
+Result<void> Residency::restore(ZoneId zone, ZoneNeed need, std::uint32_t generation) noexcept {
+  if (const auto possible = check(zone, need, Purpose::kApproach); !possible) return possible;
+  if (!fits(need, free())) return {ErrorCode::kNoRoom, need.slots};
+  open(zone, need);
+  records_[zone].generation = generation;
+  complete(zone, generation, {0, 0, need.slots});
+  return {};
+}
+
 void Residency::give_up(ZoneId zone, std::uint32_t generation) noexcept {
   Record& record = records_[zone];
   ZP_REQUIRE(record.state == ZoneState::kFilling || record.state == ZoneState::kCancelling);

@@ -92,6 +92,10 @@ class Residency {
   // The loader filled the zone, even if it was asked to give up in between: the zone is resident.
   void complete(ZoneId zone, std::uint32_t generation, SlotChain slots) noexcept;
 
+  // A zone that was resident when a run is gone on with is so again, the most recently used: before
+  // the first cycle. kNoRoom, kTooLarge, kExists.
+  Result<void> restore(ZoneId zone, ZoneNeed need, std::uint32_t generation) noexcept;
+
   // The loader gave the slots back, having failed or been cancelled: the zone is absent.
   void give_up(ZoneId zone, std::uint32_t generation) noexcept;
 

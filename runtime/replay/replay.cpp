@@ -11,6 +11,7 @@
 #include "runtime/replay/pack_filler.hpp"
 #include "runtime/replay/run_inputs.hpp"
 #include "runtime/replay/run_recorder.hpp"
+#include "runtime/replay/run_result.hpp"
 
 namespace zonepack {
 namespace {
@@ -34,7 +35,6 @@ class Run {
   bool place_at_start(Cycle& cycle, std::int64_t start_ns, std::string& fault);
   void run_cycles(Cycle& cycle, std::int64_t start_ns);
   std::optional<ReplayResult> result(const Cycle& cycle, std::string& fault);
-  void describe_map(RunTrace& trace) const;
 
   ReplayInput& input_;
   const DrivenMap& map_;
@@ -113,31 +113,13 @@ std::optional<ReplayResult> Run::result(const Cycle& cycle, std::string& fault) 
   RunSummary& summary = result.summary;
   recorder_.summarise(summary);
   summary.bytes_loaded = loader_.bytes_loaded();
-  summary.zone_switches = cycle.state().zone_switches;
+  summarise_cycle(cycle, summary);
   summary.can_frames = frames_;
-  summary.can_rejected = cycle.odometry_counters().rejected;
-  summary.corrections_used = cycle.filter_counters().used;
-  summary.corrections_rejected = cycle.filter_counters().rejected;
   summary.event_log_hash = std::move(hash).value();
   result.trace = recorder_.take_trace();
-  describe_map(result.trace);
+  describe_map(map_, result.trace);
   if (filler_) result.faults = filler_->faults();
   return result;
-}
-
-void Run::describe_map(RunTrace& trace) const {
-  const ResidencyLimits& limits = memory_.limits();
-  for (const CatalogZone& zone : map_.catalog.zones) {
-    trace.zones.push_back(
-        {zone.name, zone.zone_type, zone.polygon, zone.signatures, zone.slots * limits.slot_bytes});
-  }
-  for (const CatalogPortal& portal : map_.catalog.portals) {
-    trace.portals.push_back({portal.segment, portal.zone_a, portal.zone_b});
-  }
-  trace.budget_bytes = limits.budget;
-  trace.fixed_bytes = limits.fixed;
-  trace.max_signatures = limits.max_signatures;
-  trace.duration_s = trace.samples.empty() ? 0 : trace.samples.back().t_s;
 }
 
 }  // namespace

@@ -32,6 +32,11 @@ RunRecorder::RunRecorder(const ZoneGraph& graph, std::span<const ZoneNeed> needs
       log_(log),
       held_(needs.size(), Held::kNot) {}
 
+void RunRecorder::begin_with(ZoneId zone) noexcept {
+  held_[zone] = Held::kResident;
+  charged_.add(needs_[zone]);
+}
+
 void RunRecorder::on_event(const Event& event) noexcept {
   log_.on_event(event);
   trace_.events.push_back(

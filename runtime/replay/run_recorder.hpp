@@ -38,6 +38,9 @@ class RunRecorder final : public EventSink {
   RunRecorder(const ZoneGraph& graph, std::span<const ZoneNeed> needs, const TruthTrack* truth,
               std::int64_t period_ns, const ResidencyLimits& limits, EventSink& log);
 
+  // A zone that is resident before the first cycle, of which no event tells.
+  void begin_with(ZoneId zone) noexcept;
+
   void on_event(const Event& event) noexcept override;
 
   // After the events of the cycle.

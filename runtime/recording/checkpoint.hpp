@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "platform/base/result.hpp"
+#include "runtime/command.hpp"
+#include "runtime/event.hpp"
+#include "runtime/odometry/pose.hpp"
+#include "runtime/recording/bytes.hpp"
+
+namespace zonepack {
+
+// How a run stood before one of its cycles: enough to go on from there as from a good guess, not
+// enough to decide exactly alike before the first fixes.
+struct Checkpoint {
+  struct Held {
+    ZoneId zone = kNoZone;
+    std::uint32_t generation = 0;
+    friend bool operator==(const Held&, const Held&) = default;
+  };
+  std::uint64_t cycle = 0;    // the one that comes next
+  std::int64_t now_ns = 0;    // its time
+  std::int64_t start_ns = 0;  // the time of cycle 0
+  bool has_pose = false;
+  Pose2 T_map_base;
+  double sigma_m = 0, sigma_rad = 0;
+  ZoneId zone = kNoZone;  // the robot's own
+  bool frozen = false;
+  std::vector<Held> resident;  // used longest ago first
+  std::vector<ZoneId> pinned;  // asked for, beside those of the settings
+  std::vector<ZoneId> route;   // the hint in force
+};
+
+// The content of a checkpoint block. A map with more resident zones than a block has room for
+// loses those used longest ago.
+std::vector<std::byte> write_checkpoint(const Checkpoint& checkpoint);
+Result<Checkpoint> read_checkpoint(ByteSpan content);
+
+// Keeps what a checkpoint needs beside the pose, from what the run tells: events and commands.
+// Threads: one; not for the control thread.
+class RunMirror {
+ public:
+  explicit RunMirror(std::size_t zones);
+
+  void on_event(const Event& event);
+  void on_commands(std::span<const Command> commands);
+
+  // Fills resident, pinned, route and frozen.
+  void describe(Checkpoint& checkpoint) const;
+
+ private:
+  void use(ZoneId zone);
+
+  struct Entry {
+    std::uint64_t used = 0;  // 0: not resident
+    std::uint32_t generation = 0;
+  };
+  std::vector<Entry> zones_;  // by ZoneId
+  std::uint64_t clock_ = 0;
+  std::vector<ZoneId> pinned_;
+  std::vector<ZoneId> route_;
+  bool frozen_ = false;
+};
+
+}  // namespace zonepack

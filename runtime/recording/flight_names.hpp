@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+// The files of a flight recorder's folder. Joined in the order of flight_files() they are a
+// recording.
+namespace zonepack {
+
+inline constexpr const char* kFlightPreface = "preface";
+std::string flight_segment_name(std::uint64_t number);  // "segment-0000000042"
+
+// Paths of the preface and of the segments, oldest first; the preface whether it is there or not.
+std::vector<std::string> flight_files(const std::string& folder);
+
+}  // namespace zonepack

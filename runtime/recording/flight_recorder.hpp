@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "platform/append_file.hpp"
+#include "platform/base/byte_count.hpp"
+#include "platform/base/result.hpp"
+#include "runtime/recording/bytes.hpp"
+#include "runtime/recording/checkpoint.hpp"
+#include "runtime/recording/preface.hpp"
+
+namespace zonepack {
+
+// The last part of a recording, always at hand: a ring of files of equal size, each beginning with
+// a checkpoint, of which the oldest goes when a new one begins.
+//
+// The files stand in a folder and survive a crash, or have no names and go with the process. The
+// folder of the run before is kept beside it as NAME-previous.
+// Threads: one that appends; dump() by any other. Not for the control thread.
+class FlightRecorder {
+ public:
+  static constexpr std::uint64_t kSegments = 8;
+  static constexpr ByteCount kLeastBytes = kSegments * AppendFile::kSettleBytes;
+
+  // Keeps at most `bytes` in files named in `folder` (made when missing; its own old files are
+  // moved), or without names in `folder` when `named` is false. kIo with errno.
+  static Result<std::unique_ptr<FlightRecorder>> open(const std::string& folder, bool named,
+                                                      ByteCount bytes,
+                                                      const RecordingPreface& preface);
+
+  // Whether the next block should begin a segment. After an error it should.
+  bool wants_segment() const noexcept;
+  // Begins a segment. After a gap what stands before it is no longer part of a dump.
+  void begin_segment(const Checkpoint& checkpoint, bool after_gap);
+  // A block of cycles that ends before cycle `next_cycle`.
+  void append(ByteSpan block, std::uint64_t next_cycle);
+
+  struct Dumped {
+    std::uint64_t first_cycle = 0, next_cycle = 0;
+    ByteCount bytes = 0;
+  };
+  // Writes what is kept as one recording that appears whole; kNotFound when no cycle is kept.
+  Result<Dumped> dump(const std::string& path) const;
+
+  // Of all files now.
+  ByteCount kept_bytes() const;
+  // How often a file could not be written, and why the last time; any thread.
+  std::uint64_t failures() const;
+  Error last_error() const;
+
+ private:
+  struct Segment {
+    AppendFile file;
+    std::string path;  // empty: no name
+    std::uint64_t first_cycle = 0;
+    bool after_gap = false;
+  };
+  struct Part {  // of a segment, as a dump takes it
+    std::shared_ptr<Segment> segment;
+    std::uint64_t size = 0;
+  };
+
+  FlightRecorder(std::string folder, bool named, ByteCount bytes, AppendFile preface)
+      : folder_(std::move(folder)),
+        named_(named),
+        segment_bytes_(bytes / kSegments),
+        preface_(std::move(preface)) {}
+
+  void fail(Error error);
+  void drop_oldest();
+  std::deque<Part> parts() const;
+
+  std::string folder_;
+  bool named_;
+  ByteCount segment_bytes_;
+  AppendFile preface_;
+  mutable std::mutex mutex_;  // of what follows
+  std::deque<std::shared_ptr<Segment>> segments_;
+  std::uint64_t segment_number_ = 0;
+  std::uint64_t next_cycle_ = 0;
+  bool broken_ = true;  // the newest segment takes no more
+  std::uint64_t failures_ = 0;
+  Error last_error_;
+};
+
+}  // namespace zonepack

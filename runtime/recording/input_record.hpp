@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "platform/base/result.hpp"
+#include "runtime/cycle.hpp"
+#include "runtime/recording/bytes.hpp"
+
+// What one cycle was given, as RECORDING.md lays it out under "Records".
+namespace zonepack {
+
+enum class RecordKind : std::uint8_t { kFrames = 1, kCorrections = 2, kLoads = 3, kCommands = 4 };
+// Records of this kind and above may be passed over by a reader that does not know them; any other
+// unknown record is an input that would be missing.
+inline constexpr std::uint8_t kFirstNoteKind = 128;
+
+inline constexpr std::size_t kMostRecordedFrames = 4096;
+inline constexpr std::size_t kMostRecordedCorrections = 4096;
+inline constexpr std::size_t kMostRecordedLoads = 1024;
+inline constexpr std::size_t kMostCycleBytes = 512 * 1024;  // of one cycle's records
+
+// Room that the records of any cycle with so many frames, full commands and up to 64 corrections
+// and loads take.
+std::size_t record_room(std::uint32_t most_frames) noexcept;
+
+// Writes the records of a cycle; nothing for a cycle without input. ok() of `out` says whether they
+// fitted. Slots of loads are recorded by their number only.
+// Real-time: no allocation; work bounded by the input.
+void write_records(const CycleInput& input, ByteWriter& out) noexcept;
+
+// A cycle's inputs read back.
+struct RecordedInput {
+  std::int64_t now_ns = 0;
+  std::vector<CanFrame> frames;
+  std::vector<PoseCorrection> corrections;
+  std::vector<LoadResult> loads;  // slots: {0, 0, count}
+  std::vector<Command> commands;
+
+  CycleInput view() const noexcept { return {now_ns, frames, corrections, loads, commands}; }
+};
+
+// Replaces all but now_ns, to which stamps are relative. kBadStructure for what write_records does
+// not write, kBadVersion (detail: the kind) for an input of a kind that is not known.
+Result<void> read_records(ByteSpan records, RecordedInput& into);
+
+}  // namespace zonepack

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "runtime/cycle.hpp"
+#include "runtime/input_sink.hpp"
+#include "runtime/recording/byte_ring.hpp"
+#include "runtime/recording/bytes.hpp"
+
+namespace zonepack {
+
+// A cycle as it leaves the tap: what it was given, and how the run stood before it.
+struct TappedCycle {
+  struct Head {
+    std::uint64_t cycle = 0;  // from 0
+    std::int64_t now_ns = 0;
+    std::int64_t clock_offset_ns = 0;  // CLOCK_REALTIME minus the run's clock
+    Pose2 T_map_base;
+    double sigma_m = 0, sigma_rad = 0;
+    ZoneId zone = kNoZone;
+    bool has_pose = false;
+  };
+  Head head;
+  ByteSpan records;  // input_record.hpp
+};
+
+// Where the control thread leaves the inputs of each cycle, for a slower thread to record.
+//
+// A cycle that finds no room, or is larger than expected, is lost and counted; the reader of the
+// recording sees the gap in the numbers of the cycles.
+// Real-time: on_inputs() neither allocates nor waits; its work is bounded by the input.   Threads:
+// on_inputs() by the control thread, next() by one other, lost() by any.
+class InputTap final : public InputSink {
+ public:
+  // Some seconds of a busy bus at 1 kHz, half a minute of a quiet one at 100 Hz.
+  static constexpr std::size_t kRingBytes = 512 * 1024;
+
+  // most_frames: given to one cycle.
+  explicit InputTap(std::uint32_t most_frames, std::size_t ring_bytes = kRingBytes);
+
+  // Looks at how the last cycle left the run, for checkpoints; before the first cycle. `state` must
+  // outlive the calls of on_inputs().
+  void follow(const CycleState& state) noexcept { state_ = &state; }
+
+  void on_inputs(std::uint64_t cycle, const CycleInput& input,
+                 std::int64_t clock_offset_ns) noexcept override;
+
+  // The oldest cycle not yet taken; its records are valid until the next call. False: none.
+  bool next(TappedCycle& cycle);
+
+  // The most that records of a next() can take.
+  std::size_t most_cycle_bytes() const noexcept { return scratch_.size(); }
+
+  std::uint64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
+
+ private:
+  ByteRing ring_;
+  const CycleState* state_ = nullptr;
+  std::vector<std::byte> scratch_;  // of on_inputs()
+  std::vector<std::byte> message_;  // of next()
+  std::atomic<std::uint64_t> lost_{0};
+};
+
+}  // namespace zonepack

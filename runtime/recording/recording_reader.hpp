@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform/storage.hpp"
+#include "runtime/recording/checkpoint.hpp"
+#include "runtime/recording/cycle_block.hpp"
+#include "runtime/recording/preface.hpp"
+#include "runtime/recording/recording_end.hpp"
+
+namespace zonepack {
+
+// Reads a recording from its first cycle to the last that can be vouched for. Whatever the bytes
+// are, the cycles given are whole, checked, and follow each other without a gap.
+//
+// Memory: the preface and one block.   Threads: one; allocates.
+class RecordingReader {
+ public:
+  // A recording, or the folder of a flight recorder. Nothing when it cannot be read up to its first
+  // cycle; `fault` says why in a complete message.
+  static std::optional<RecordingReader> open(const std::string& path, std::string& fault);
+
+  const RecordingPreface& preface() const noexcept { return preface_; }
+  // Where the run stood before the first cycle; nothing when that is cycle 0.
+  const std::optional<Checkpoint>& checkpoint() const noexcept { return checkpoint_; }
+  std::uint64_t first_cycle() const noexcept { return next_cycle_first_; }
+
+  // The next cycle, valid until the next call; null at the end.
+  const RecordedInput* next();
+  // The number of the cycle that next() gave last, plus one.
+  std::uint64_t cycles_read() const noexcept { return next_cycle_; }
+
+  // After the last cycle. Why it is the last, when the run did not end there: a complete message;
+  // empty when it did.
+  const std::string& note() const noexcept { return note_; }
+  // Whether cycles that were run are missing: cut off, damaged or lost.
+  bool complete() const noexcept { return complete_; }
+  const std::optional<RecordingEnd>& end() const noexcept { return end_; }
+
+ private:
+  explicit RecordingReader(std::string path) : path_(std::move(path)) {}
+
+  bool open_files(std::string& fault);
+  bool read_start(std::string& fault);
+  // The next block's content in block_; nothing at the end of the files.
+  std::optional<std::uint8_t> read_block(Error& error);
+  bool next_block();
+  void stop(const std::string& why, bool complete = false);
+
+  std::string path_;
+  std::vector<StorageFile> files_;  // read one after the other
+  std::size_t file_ = 0;
+  std::uint64_t offset_ = 0;
+  RecordingPreface preface_;
+  std::optional<Checkpoint> checkpoint_;
+  std::optional<RecordingEnd> end_;
+  std::vector<std::byte> stored_;
+  std::vector<std::byte> block_;
+  CycleBlockReader cycles_;
+  RecordedInput input_;
+  std::uint64_t next_cycle_first_ = 0;
+  std::uint64_t next_cycle_ = 0;
+  std::int64_t last_ns_ = 0;
+  bool stopped_ = false;
+  bool complete_ = false;
+  std::string note_;
+};
+
+}  // namespace zonepack

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "runtime/cycle.hpp"
+#include "runtime/replay/driven_map.hpp"
+#include "runtime/replay/run_summary.hpp"
+#include "runtime/replay/run_trace.hpp"
+
+namespace zonepack {
+
+// Fills the zones, portals and limits of a trace whose samples are there.
+void describe_map(const DrivenMap& map, RunTrace& trace);
+
+// Fills what the cycle itself counts.
+void summarise_cycle(const Cycle& cycle, RunSummary& summary);
+
+}  // namespace zonepack
