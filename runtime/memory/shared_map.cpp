@@ -6,40 +6,6 @@
 #include "platform/base/require.hpp"
 
 namespace zonepack {
-namespace {
-
-constexpr ByteCount kPageBytes = 4096;
-
-constexpr ByteCount rounded(ByteCount bytes, ByteCount to) { return (bytes + to - 1) / to * to; }
-
-struct Places {
-  ByteCount zones, links, chunks, slots, total;
-};
-
-Places places_of(std::uint32_t zone_capacity, std::uint32_t slots) noexcept {
-  Places at{};
-  at.zones = rounded(sizeof(SharedHeader), 64);
-  at.links = rounded(at.zones + ByteCount{zone_capacity} * sizeof(SharedZone), 64);
-  at.chunks = rounded(at.links + ByteCount{slots} * sizeof(SlotIndex), 64);
-  at.slots =
-      rounded(at.chunks + ByteCount{slots} * kMaxChunksPerSlot * sizeof(SharedChunk), kPageBytes);
-  at.total = at.slots + ByteCount{slots} * kSlotBytes;
-  return at;
-}
-
-}  // namespace
-
-ByteCount shared_map_bytes(std::uint32_t zone_capacity, std::uint32_t slots) noexcept {
-  return places_of(zone_capacity, slots).total;
-}
-
-bool shared_header_is_sound(const SharedHeader& header, std::uint64_t bytes) noexcept {
-  const Places at = places_of(header.zone_capacity, header.slot_count);
-  return header.magic == kSharedMagic && header.version == kSharedVersion &&
-         header.slot_bytes == kSlotBytes && header.zones_at == at.zones &&
-         header.links_at == at.links && header.chunks_at == at.chunks &&
-         header.slots_at == at.slots && header.total_bytes == at.total && at.total == bytes;
-}
 
 SharedMap::SharedMap(std::byte* memory) noexcept
     : memory_(memory),
@@ -48,7 +14,7 @@ SharedMap::SharedMap(std::byte* memory) noexcept
 
 Result<SharedMap> SharedMap::lay_out(std::span<std::byte> memory, std::uint32_t zone_capacity,
                                      std::uint32_t slots) {
-  const Places at = places_of(zone_capacity, slots);
+  const SharedPlaces at = shared_places(zone_capacity, slots);
   if (memory.size() != at.total) return {ErrorCode::kMismatch, static_cast<std::int64_t>(at.total)};
   auto* header = reinterpret_cast<SharedHeader*>(memory.data());
   if (header->magic == 0) {

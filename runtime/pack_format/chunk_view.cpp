@@ -155,10 +155,9 @@ Result<void> check_chunk(ByteSpan bytes, const fb::ChunkEntry& entry) noexcept {
 
 ColumnView RecordView::column(fb::Field field) const noexcept {
   for (std::uint32_t i = 0; i < record_->columns(); ++i) {
-    const fb::Column* const column = chunk_->columns()->Get(record_->first_column() + i);
-    if (column->field() == field) {
-      return {*column, reinterpret_cast<const std::byte*>(chunk_->bytes()->data()),
-              is_attribute(field) ? 1 : record_->rows()};
+    const fb::Column& column = columns_[i];
+    if (column.field() == field) {
+      return {column, bytes_, is_attribute(field) ? 1 : record_->rows()};
     }
   }
   return {};

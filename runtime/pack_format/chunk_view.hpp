@@ -45,7 +45,14 @@ Result<void> check_chunk(ByteSpan bytes, const fb::ChunkEntry& entry) noexcept;
 class RecordView {
  public:
   RecordView(const fb::BulkChunk& chunk, std::uint32_t record) noexcept
-      : chunk_(&chunk), record_(chunk.records()->Get(record)) {}
+      : record_(chunk.records()->Get(record)),
+        columns_(reinterpret_cast<const fb::Column*>(chunk.columns()->Data()) +
+                 record_->first_column()),
+        bytes_(reinterpret_cast<const std::byte*>(chunk.bytes()->data())) {}
+  // A record and its columns that were copied out of a checked chunk, whose bytes stay where they
+  // are and may change: what is read there may be wrong, but is read inside them.
+  RecordView(const fb::Record& record, const fb::Column* columns, const std::byte* bytes) noexcept
+      : record_(&record), columns_(columns), bytes_(bytes) {}
 
   std::uint32_t signature() const noexcept { return record_->signature(); }
   fb::Part part() const noexcept { return record_->part(); }
@@ -58,8 +65,9 @@ class RecordView {
   ColumnView column(fb::Field field) const noexcept;
 
  private:
-  const fb::BulkChunk* chunk_;
   const fb::Record* record_;
+  const fb::Column* columns_;  // the record's
+  const std::byte* bytes_;     // the chunk's
 };
 
 }  // namespace zonepack

@@ -89,12 +89,14 @@ std::uint32_t ColumnView::bits_at(std::uint32_t row) const noexcept {
       return std::bit_cast<std::uint32_t>(static_cast<float>(value) * scale);
     }
     case fb::ColumnCodec::Blocks: {
-      BlockHeader header;
-      std::memcpy(&header, data_ + std::size_t{row / kBlockRows} * sizeof header, sizeof header);
+      const auto header =
+          read_once<BlockHeader>(data_ + std::size_t{row / kBlockRows} * sizeof(BlockHeader));
       const std::size_t blocks = (std::size_t{rows_} + kBlockRows - 1) / kBlockRows;
-      const std::byte* const bits = data_ + blocks * sizeof header + std::size_t{header.offset} * 4;
+      const std::size_t at = blocks * sizeof header + std::size_t{header.offset} * 4;
+      const std::uint32_t last_word = (row % kBlockRows) * header.bits / 8;
+      if (header.bits > 32 || at + last_word > column_->size()) return 0;  // changed since checked
       return bits_from_ordered(field(),
-                               header.base + packed_at(bits, row % kBlockRows, header.bits));
+                               header.base + packed_at(data_ + at, row % kBlockRows, header.bits));
     }
     case fb::ColumnCodec::Lattice:
     case fb::ColumnCodec::Subset:

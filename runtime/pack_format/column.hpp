@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -59,7 +60,18 @@ inline std::uint32_t packed_at(const std::byte* bytes, std::uint32_t index,
   return static_cast<std::uint32_t>((word >> (bit & 7)) & ((std::uint64_t{1} << width) - 1));
 }
 
-// One column of one record, where it stands. Made by ChunkView from validated bytes only.
+// A value out of bytes that another process may change meanwhile: the compiler does not read them
+// a second time after the value was checked.
+template <typename T>
+T read_once(const std::byte* from) noexcept {
+  T value;
+  std::memcpy(&value, from, sizeof value);
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+  return value;
+}
+
+// One column of one record, where it stands. Made by RecordView from validated columns only; their
+// bytes may change later, after which values are wrong, but nothing outside the column is read.
 // Threads: immutable. Real-time: every access O(1), no allocation.
 class ColumnView {
  public:
@@ -97,21 +109,20 @@ class ColumnView {
 // Calls fn(x_m, y_m) for every row of a Lattice column, in order. At most rows() calls.
 template <typename Fn>
 void for_each_cell(const ColumnView& column, Fn&& fn) {
-  LatticeHeader header;
-  std::memcpy(&header, column.bytes().data(), sizeof header);
+  const auto header = read_once<LatticeHeader>(column.bytes().data());
   const std::byte* const bitmap = column.bytes().data() + sizeof header;
+  const std::uint64_t bits = (column.bytes().size() - sizeof header) * 8;
+  if (header.width == 0 || header.height > bits / header.width) return;  // changed since checked
   std::uint32_t left = column.rows();
   for (std::uint32_t row = 0; row < header.height && left != 0; ++row) {
     const float y =
-        static_cast<float>(header.first_y + static_cast<std::int32_t>(row)) * header.cell +
-        header.origin_y;
+        static_cast<float>(std::int64_t{header.first_y} + row) * header.cell + header.origin_y;
     for (std::uint32_t col = 0; col < header.width && left != 0; ++col) {
       const std::uint64_t bit = std::uint64_t{row} * header.width + col;
       if ((std::to_integer<unsigned>(bitmap[bit >> 3]) >> (bit & 7) & 1) == 0) continue;
       --left;
       const float x =
-          static_cast<float>(header.first_x + static_cast<std::int32_t>(col)) * header.cell +
-          header.origin_x;
+          static_cast<float>(std::int64_t{header.first_x} + col) * header.cell + header.origin_x;
       fn(x, y);
     }
   }

@@ -23,25 +23,35 @@ bool rows_are_complete(std::span<const RecordView> records) {
 }  // namespace
 
 Result<ZoneView> ZoneView::make(std::span<const ChunkRef> chunks, OrdinalRange range) {
-  ZoneView view;
-  view.first_ = range.first;
-  std::vector<std::pair<std::uint32_t, Core>> cores;
+  std::vector<const fb::CoreChunk*> cores;
+  std::vector<RecordView> records;
   for (const ChunkRef& ref : chunks) {
     if (ref.kind == fb::PayloadKind::Core) {
-      const fb::CoreChunk* const chunk = fb::GetCoreChunk(ref.bytes.data());
-      std::uint32_t ordinal = chunk->first_signature();
-      bool first = true;
-      for (const fb::Signature* signature : *chunk->signatures()) {
-        if (!first && !signature->continued()) ++ordinal;
-        first = false;
-        if (range.contains(ordinal)) cores.push_back({ordinal, {chunk, signature, {}}});
-      }
-    } else {
-      const fb::BulkChunk* const chunk = fb::GetBulkChunk(ref.bytes.data());
-      for (std::uint32_t i = 0; i < chunk->records()->size(); ++i) {
-        const RecordView record(*chunk, i);
-        if (range.contains(record.signature())) view.records_.push_back(record);
-      }
+      cores.push_back(fb::GetCoreChunk(ref.bytes.data()));
+      continue;
+    }
+    const fb::BulkChunk* const chunk = fb::GetBulkChunk(ref.bytes.data());
+    for (std::uint32_t i = 0; i < chunk->records()->size(); ++i) {
+      const RecordView record(*chunk, i);
+      if (range.contains(record.signature())) records.push_back(record);
+    }
+  }
+  return make(cores, std::move(records), range);
+}
+
+Result<ZoneView> ZoneView::make(std::span<const fb::CoreChunk* const> core_chunks,
+                                std::vector<RecordView> records, OrdinalRange range) {
+  ZoneView view;
+  view.first_ = range.first;
+  view.records_ = std::move(records);
+  std::vector<std::pair<std::uint32_t, Core>> cores;
+  for (const fb::CoreChunk* const chunk : core_chunks) {
+    std::uint32_t ordinal = chunk->first_signature();
+    bool first = true;
+    for (const fb::Signature* signature : *chunk->signatures()) {
+      if (!first && !signature->continued()) ++ordinal;
+      first = false;
+      if (range.contains(ordinal)) cores.push_back({ordinal, {chunk, signature, {}}});
     }
   }
   std::stable_sort(cores.begin(), cores.end(), [](const auto& a, const auto& b) {
@@ -71,15 +81,15 @@ Result<ZoneView> ZoneView::make(std::span<const ChunkRef> chunks, OrdinalRange r
   for (std::size_t begin = 0; begin < all.size();) {
     std::size_t end = begin + 1;
     while (end < all.size() && table_key(all[end]) == table_key(all[begin])) ++end;
-    const auto records = all.subspan(begin, end - begin);
-    const std::uint32_t place = records[0].signature() - range.first;
-    if (place >= view.size() || !rows_are_complete(records)) {
-      return {ErrorCode::kMismatch, records[0].signature()};
+    const auto own = all.subspan(begin, end - begin);
+    const std::uint32_t place = own[0].signature() - range.first;
+    if (place >= view.size() || !rows_are_complete(own)) {
+      return {ErrorCode::kMismatch, own[0].signature()};
     }
     while (view.first_table_.size() <= place) {
       view.first_table_.push_back(view.tables_.size());
     }
-    view.tables_.emplace_back(records);
+    view.tables_.emplace_back(own);
     begin = end;
   }
   while (view.first_table_.size() <= view.core_.size()) {

@@ -50,6 +50,10 @@ class ZoneView {
   // its signatures only, and the chunks need not hold others whole.
   static Result<ZoneView> make(std::span<const ChunkRef> chunks, OrdinalRange range = {});
 
+  // The same of checked core chunks, and of the records of all other chunks.
+  static Result<ZoneView> make(std::span<const fb::CoreChunk* const> cores,
+                               std::vector<RecordView> records, OrdinalRange range = {});
+
   std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(core_.size()); }
 
   // An entry of a core chunk; its indices refer to that chunk's lists.

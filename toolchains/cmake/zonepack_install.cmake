@@ -12,12 +12,14 @@ endfunction()
 function(zonepack_install_headers)
   foreach(dir ${ARGN})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${dir} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/zonepack
-            FILES_MATCHING PATTERN "*.hpp")
+            FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
   endforeach()
 endfunction()
 
-zonepack_install_libraries(zonepack-runtime zonepack_platform zonepack_pack_format zonepack_protocol
-                           zonepack_report zonepack_core zonepack_runtime)
+zonepack_install_libraries(zonepack-client zonepack_platform zonepack_views zonepack_protocol
+                           zonepack_client)
+zonepack_install_libraries(zonepack-runtime zonepack_pack_format zonepack_report zonepack_core
+                           zonepack_runtime)
 zonepack_install_headers(platform runtime)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/generated/runtime
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/zonepack FILES_MATCHING PATTERN "*_generated.h")

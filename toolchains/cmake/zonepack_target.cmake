@@ -10,6 +10,12 @@ function(zonepack_library name)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${dir}/*.cpp)
     list(APPEND sources ${found})
   endforeach()
+  zonepack_library_of(${name} ${sources})
+endfunction()
+
+# zonepack_library_of(NAME FILE...): a static library of these sources.
+function(zonepack_library_of name)
+  set(sources ${ARGN})
   list(SORT sources)
   add_library(zonepack_${name} STATIC ${sources})
   add_library(zonepack::${name} ALIAS zonepack_${name})
