@@ -17,6 +17,8 @@ const char* to_string(Command::Kind kind) noexcept {
       return "lease";
     case Command::Kind::kRelease:
       return "release";
+    case Command::Kind::kMapFreed:
+      return "map_freed";
     case Command::Kind::kRouteHint:
       return "route_hint";
   }

@@ -22,6 +22,7 @@ struct Command {
     kLease,      // zone: a reader holds it, for at most the lease time
     kRelease,    // lease
     kRouteHint,  // route: the zones that a planned way leads through, in order; empty ends it
+    kMapFreed,   // the tables of the map before the last change are gone
   };
   static constexpr std::size_t kMostRoute = 64;
 

@@ -144,6 +144,8 @@ CommandReply Cycle::obey(const Command& command, std::int64_t now_ns) noexcept {
     case Command::Kind::kRelease:
       if (exists(command.lease.zone)) memory_.release(command.lease);
       break;
+    case Command::Kind::kMapFreed:
+      break;  // MapRun's
     case Command::Kind::kRouteHint:
       route_length_ = 0;
       for (std::size_t i = 0; i < command.route_length && i < route_.size(); ++i) {
@@ -199,6 +201,19 @@ void Cycle::want_route(Wanted& wanted) const noexcept {
   const auto end = route_.begin() + static_cast<std::ptrdiff_t>(route_length_);
   auto next = std::find(route_.begin(), end, tracker_.zone());
   for (int ahead = 0; ahead < 2 && next != end && ++next != end; ++ahead) wanted.add(*next);
+}
+
+void Cycle::go_on_from(const Cycle& other) noexcept {
+  odometry_ = other.odometry_;
+  filter_ = other.filter_;
+  state_ = other.state_;
+  state_.zone = kNoZone;
+  state_.zone_resident = false;
+  state_.map_ready = false;
+  state_.blocked = false;
+  start_ns_ = other.start_ns_;
+  odometry_stale_ = other.odometry_stale_;
+  events_.begin_cycle(state_.cycles - 1, other.events_.t_ns());
 }
 
 void Cycle::finish() noexcept { emit(EventKind::kEnd); }

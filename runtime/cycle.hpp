@@ -93,6 +93,16 @@ class Cycle {
   // Records the end of the run.
   void finish() noexcept;
 
+  // Goes on where the cycle of another map stands: pose, odometry, counters and time are its, and
+  // the map is this one's. Real-time: copies, no allocation; both need the same settings. Before
+  // the first run().
+  void go_on_from(const Cycle& other) noexcept;
+
+  MapKeeper& keeper() noexcept { return keeper_; }
+
+  // Records an event that is not the cycle's own, at its time.
+  void tell(EventKind kind, const char* reason = nullptr) noexcept { emit(kind, kNoZone, reason); }
+
   const CycleState& state() const noexcept { return state_; }
   const WheelOdometryCounters& odometry_counters() const noexcept { return odometry_.counters(); }
   const PoseFilterCounters& filter_counters() const noexcept { return filter_.counters(); }

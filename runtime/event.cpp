@@ -45,6 +45,12 @@ const char* to_string(EventKind kind) noexcept {
       return "unblocked";
     case EventKind::kNotKeepingUp:
       return "not_keeping_up";
+    case EventKind::kMapOffered:
+      return "map_offered";
+    case EventKind::kMapChanged:
+      return "map_changed";
+    case EventKind::kMapRefused:
+      return "map_refused";
     case EventKind::kEnd:
       return "end";
   }

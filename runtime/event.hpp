@@ -29,6 +29,9 @@ enum class EventKind : std::uint8_t {
   kBlocked,  // a wanted zone does not fit beside what must stay
   kUnblocked,
   kNotKeepingUp,  // the robot entered a zone that is not resident
+  kMapOffered,    // another version of the map is to be taken
+  kMapChanged,    // it was; zones from here on are the new map's
+  kMapRefused,    // it was not, reason says why: the old one stays
   kEnd,
 };
 
@@ -69,6 +72,8 @@ class EventStamper {
     cycle_ = cycle;
     t_ns_ = t_ns;
   }
+
+  std::int64_t t_ns() const noexcept { return t_ns_; }
 
   void emit(Event event) noexcept {
     event.cycle = cycle_;

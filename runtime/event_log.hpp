@@ -26,7 +26,8 @@ std::string json_quoted(std::string_view text);
 //   correction_rejected,
 //                       odometry_stale, odometry_resumed, zone_entered, zone_wanted, zone_unwanted,
 //                       load_started, load_done, load_cancelled, load_given_up, load_failed,
-//                       evicted, blocked, unblocked, not_keeping_up, end (event.hpp says what each
+//                       evicted, blocked, unblocked, not_keeping_up, map_offered, map_changed,
+//                       map_refused, end (event.hpp says what each
 //                       means)
 //   zone                its name                                     where a zone is meant
 //   signatures          of the zone                                  where a zone is meant

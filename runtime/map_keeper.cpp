@@ -117,6 +117,7 @@ void MapKeeper::see_to(std::size_t place, std::span<const ZoneId> wanted, bool u
 }
 
 bool MapKeeper::may_start(ZoneId zone, bool own, std::int64_t now_ns) noexcept {
+  if (held_) return false;
   if (now_ns < retries_[zone].not_before_ns) return false;
   if (loading_ == kNoZone) return true;
   if (own) cancel_load();
@@ -142,6 +143,25 @@ Result<std::size_t> MapKeeper::admit(ZoneId zone, Purpose purpose) noexcept {
     emit(EventKind::kLoadStarted, zone);
   }
   return result;
+}
+
+bool MapKeeper::drop(ZoneId zone) noexcept {
+  const auto evicted = memory_.drop(zone);
+  if (!evicted) return false;
+  if (directory_ != nullptr) directory_->withdraw(zone);
+  loader_.take_back(evicted->slots);
+  emit(EventKind::kEvicted, zone);
+  return true;
+}
+
+void MapKeeper::take_over(ZoneId zone, const SlotChain& slots) noexcept {
+  const auto admitted =
+      memory_.admit(zone, needs_[zone], Purpose::kOwnZone, [](const Eviction&) {});
+  ZP_REQUIRE(admitted && *admitted == 0);
+  emit(EventKind::kLoadStarted, zone);
+  memory_.complete(zone, memory_.generation(zone), slots);
+  if (directory_ != nullptr) directory_->publish(zone, memory_.generation(zone), slots);
+  emit(EventKind::kLoadDone, zone);
 }
 
 void MapKeeper::cancel_load() noexcept {

@@ -53,6 +53,17 @@ class MapKeeper {
   // first is the robot's own zone; those after the first `urgent` are only possible.
   void keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent) noexcept;
 
+  // While held, nothing is loaded or asked to be; a load under way comes to its end.
+  void hold(bool held) noexcept { held_ = held; }
+  bool loading() const noexcept { return loading_ != kNoZone; }
+
+  // Evicts a resident zone, whoever wants it; false when it is not resident.
+  bool drop(ZoneId zone) noexcept;
+
+  // Takes a zone as loaded that another map's keeper had loaded for this one: admits and completes
+  // it. Before the first keep().
+  void take_over(ZoneId zone, const SlotChain& slots) noexcept;
+
   // A wanted zone did not fit in the last cycle.
   bool blocked() const noexcept { return blocked_ != kNoZone; }
 
@@ -88,6 +99,7 @@ class MapKeeper {
   std::vector<Retry> retries_;
   std::array<ZoneId, kMaxWanted> wanted_{};
   std::size_t wanted_count_ = 0;
+  bool held_ = false;
   ZoneId loading_ = kNoZone;
   ZoneId blocked_ = kNoZone;
   ZoneId does_not_fit_ = kNoZone;  // the most urgent one of this cycle

@@ -10,6 +10,8 @@
 
 namespace zonepack {
 
+struct Catalog;
+
 struct LoadRequest {
   ZoneId zone = kNoZone;
   std::uint32_t generation = 0;
@@ -44,6 +46,9 @@ class ZoneLoader {
 
   // Takes the slots of an evicted zone among the free ones.
   virtual void take_back(SlotChain slots) noexcept = 0;
+
+  // Loads asked for from here on are of this map; one under way is not.
+  virtual void use(const Catalog& catalog) noexcept = 0;
 
   // The next result, if one has come.
   virtual std::optional<LoadResult> poll() noexcept = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "platform/allocation_watch.hpp"
+#include "platform/base/require.hpp"
 #include "platform/clock.hpp"
 
 namespace zonepack {
@@ -55,6 +56,12 @@ std::int64_t ControlLoop::next_deadline(std::int64_t deadline_ns, std::int64_t b
   return deadline_ns + (late_periods + 1) * period_ns;
 }
 
+bool ControlLoop::offer(MapInUse& next) noexcept {
+  MapInUse* none = nullptr;
+  return unused_.load(std::memory_order_acquire) == nullptr &&
+         offered_.compare_exchange_strong(none, &next, std::memory_order_acq_rel);
+}
+
 void ControlLoop::step(std::uint64_t cycle, std::int64_t began_ns) noexcept {
   cycles_.store(cycle + 1, std::memory_order_relaxed);
   CycleInput input;
@@ -82,7 +89,14 @@ void ControlLoop::step(std::uint64_t cycle, std::int64_t began_ns) noexcept {
   if (ports_.recorder != nullptr) ports_.recorder->on_inputs(cycle, input, offset_ns);
 
   const std::int64_t received_ns = monotonic_ns();
-  ports_.cycle.run(input);
+  if (MapInUse* const next = offered_.exchange(nullptr, std::memory_order_acq_rel)) {
+    const bool taken = ports_.maps.offer(*next);
+    ZP_REQUIRE(taken);
+  }
+  ports_.maps.run(input);
+  if (MapInUse* const unused = ports_.maps.take_unused()) {
+    unused_.store(unused, std::memory_order_release);
+  }
   const std::int64_t ran_ns = monotonic_ns();
   answer();
   status_.can_frames += frames;
@@ -106,25 +120,25 @@ std::size_t ControlLoop::take_corrections(std::int64_t now_ns) noexcept {
 
 void ControlLoop::answer() noexcept {
   if (ports_.replies == nullptr) return;
-  for (const CommandReply& reply : ports_.cycle.replies()) {
+  for (const CommandReply& reply : ports_.maps.map().cycle.replies()) {
     ports_.overload.lost_replies += !ports_.replies->push(reply);
   }
 }
 
 void ControlLoop::publish(const CycleInput& input, std::int64_t offset_ns) noexcept {
-  const Residency& memory = ports_.memory;
-  ports_.notes.after_cycle(record_of(input.now_ns, ports_.cycle.state(), memory));
+  const Residency& memory = ports_.maps.map().memory;
+  ports_.notes.after_cycle(record_of(input.now_ns, ports_.maps.map().cycle.state(), memory));
   status_.now_ns = input.now_ns;
   status_.clock_offset_ns = offset_ns;
-  status_.state = ports_.cycle.state();
+  status_.state = ports_.maps.map().cycle.state();
   status_.budget = memory.limits().budget;
   status_.charged = memory.charged();
   status_.max_signatures = memory.limits().max_signatures;
   status_.charged_sum = memory.used_sum();
   status_.resident_sum = memory.resident_sum();
   status_.residency = memory.counters();
-  status_.odometry = ports_.cycle.odometry_counters();
-  status_.filter = ports_.cycle.filter_counters();
+  status_.odometry = ports_.maps.map().cycle.odometry_counters();
+  status_.filter = ports_.maps.map().cycle.filter_counters();
   status_.overload = ports_.overload;
   status_.frozen = memory.frozen();
   const ThreadUsage usage = thread_usage();

@@ -10,11 +10,11 @@
 #include "platform/realtime.hpp"
 #include "platform/seqlock.hpp"
 #include "platform/spsc_queue.hpp"
-#include "runtime/cycle.hpp"
 #include "runtime/input_sink.hpp"
 #include "runtime/live/histogram.hpp"
 #include "runtime/live/live_notes.hpp"
 #include "runtime/live/live_status.hpp"
+#include "runtime/map_run.hpp"
 
 namespace zonepack {
 
@@ -47,8 +47,7 @@ struct ControlSettings {
 struct ControlPorts {
   RunClock& clock;
   CanBus& bus;
-  Cycle& cycle;
-  Residency& memory;
+  MapRun& maps;
   ZoneLoader& loader;
   EventFanOut& notes;
   OverloadCounters& overload;
@@ -78,6 +77,12 @@ class ControlLoop {
   void run() noexcept;
   void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
 
+  // Offers another map, once the one offered before was given back by take_unused(). One other
+  // thread.
+  bool offer(MapInUse& next) noexcept;
+  // The map that is not used any more, once: after a change the one before, else the one offered.
+  MapInUse* take_unused() noexcept { return unused_.exchange(nullptr, std::memory_order_acq_rel); }
+
   // Cycles begun so far; any thread.
   std::uint64_t cycles() const noexcept { return cycles_.load(std::memory_order_relaxed); }
 
@@ -99,6 +104,8 @@ class ControlLoop {
   ControlSettings settings_;
   ControlPorts ports_;
   std::atomic<bool> stop_{false};
+  std::atomic<MapInUse*> offered_{nullptr};
+  std::atomic<MapInUse*> unused_{nullptr};
   std::atomic<std::uint64_t> cycles_{0};
   std::vector<CanFrame> frames_;
   std::array<PoseCorrection, kMostCorrections> corrections_{};

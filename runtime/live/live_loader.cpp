@@ -52,7 +52,7 @@ class ChunkPlaces {
 }  // namespace
 
 LiveLoader::LiveLoader(const Catalog& catalog, SharedMap& map)
-    : catalog_(catalog),
+    : catalog_(&catalog),
       map_(map),
       pool_(map.links()),
       inbox_(map.slot_count() + 4),
@@ -79,7 +79,7 @@ void LiveLoader::stop() noexcept {
 
 void LiveLoader::load(const LoadRequest& request) noexcept {
   under_way_ = request;
-  ZP_REQUIRE(inbox_.push({Message::Kind::kLoad, request, {}}));
+  ZP_REQUIRE(inbox_.push({Message::Kind::kLoad, request, {}, catalog_}));
   wakeup_.post();
 }
 
@@ -89,7 +89,7 @@ void LiveLoader::cancel() noexcept {
 
 void LiveLoader::take_back(SlotChain slots) noexcept {
   if (slots.count == 0) return;
-  ZP_REQUIRE(inbox_.push({Message::Kind::kTakeBack, {}, slots}));
+  ZP_REQUIRE(inbox_.push({Message::Kind::kTakeBack, {}, slots, nullptr}));
 }
 
 std::optional<LoadResult> LiveLoader::poll() noexcept {
@@ -106,17 +106,18 @@ void LiveLoader::run() {
       if (message.kind == Message::Kind::kTakeBack) {
         pool_.give_back(message.slots);
       } else {
-        ZP_REQUIRE(outbox_.push(fill(message.request)));
+        ZP_REQUIRE(outbox_.push(fill(message)));
       }
     }
     wakeup_.wait_until(monotonic_ns() + kLongestSleep_ns);
   }
 }
 
-LoadResult LiveLoader::fill(const LoadRequest& request) {
+LoadResult LiveLoader::fill(const Message& message) {
+  const LoadRequest& request = message.request;
   LoadResult result{request.zone, request.generation, {}, {}};
   ZP_REQUIRE(pool_.take(request.slots, result.slots));
-  result.error = read_zone(request, result.slots);
+  result.error = read_zone(message, result.slots);
   if (result.error.code != ErrorCode::kOk) {
     pool_.give_back(result.slots);
     if (result.error.code != ErrorCode::kCancelled) ++failed_loads_;
@@ -129,7 +130,8 @@ bool LiveLoader::cancelled(const LoadRequest& request) const noexcept {
          cancelled_.load(std::memory_order_acquire) == key_of(request);
 }
 
-Error LiveLoader::read_zone(const LoadRequest& request, const SlotChain& slots) {
+Error LiveLoader::read_zone(const Message& message, const SlotChain& slots) {
+  const LoadRequest& request = message.request;
   slots_.clear();
   places_.clear();
   for (SlotIndex slot = slots.head; slot != kNoSlot; slot = pool_.next(slot)) {
@@ -137,7 +139,7 @@ Error LiveLoader::read_zone(const LoadRequest& request, const SlotChain& slots) 
     places_.push_back(map_.slot(slot).data());
   }
   if (cancelled(request)) return {ErrorCode::kCancelled};
-  auto load = ZoneLoad::begin(catalog_, request.zone, places_, read_buffer_);
+  auto load = ZoneLoad::begin(*message.catalog, request.zone, places_, read_buffer_);
   if (!load) return load.error();
   ChunkPlaces chunks(map_, slots_);
   for (;;) {

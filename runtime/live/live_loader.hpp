@@ -35,6 +35,7 @@ class LiveLoader final : public ZoneLoader {
   void load(const LoadRequest& request) noexcept override;
   void cancel() noexcept override;
   void take_back(SlotChain slots) noexcept override;
+  void use(const Catalog& catalog) noexcept override { catalog_ = &catalog; }
   std::optional<LoadResult> poll() noexcept override;
 
   // Of loads that were completed. Any thread.
@@ -49,14 +50,15 @@ class LiveLoader final : public ZoneLoader {
     Kind kind = Kind::kLoad;
     LoadRequest request;
     SlotChain slots;
+    const Catalog* catalog = nullptr;
   };
 
   void run();
-  LoadResult fill(const LoadRequest& request);
-  Error read_zone(const LoadRequest& request, const SlotChain& slots);
+  LoadResult fill(const Message& message);
+  Error read_zone(const Message& message, const SlotChain& slots);
   bool cancelled(const LoadRequest& request) const noexcept;
 
-  const Catalog& catalog_;
+  const Catalog* catalog_;  // the control thread's
   SharedMap& map_;
   SlotPool pool_;
   SpscQueue<Message> inbox_;

@@ -105,6 +105,8 @@ struct LiveRun::Parts {
   std::unique_ptr<CanLogReader> can_log;
   std::unique_ptr<LogFeed> feed;
   std::unique_ptr<Cycle> cycle;
+  std::optional<MapInUse> in_use;
+  std::optional<MapRun> maps;
   std::unique_ptr<ControlLoop> loop;
   Thread control_thread;
   std::atomic<bool> control_ended{false};
@@ -205,11 +207,12 @@ bool LiveRun::start(std::string& fault) {
                                     CycleParts{p.map.graph, p.map.needs, p.map.load_s, p.map.pinned,
                                                p.memory, p.loader, p.events, &p.shared});
   if (!p.place_at_start(fault)) return false;
+  p.in_use.emplace(MapInUse{p.map.catalog, p.map.graph, p.map.needs, p.memory, *p.cycle});
+  p.maps.emplace(*p.in_use, p.loader, &p.shared);
   p.loop = std::make_unique<ControlLoop>(p.control_settings(),
                                          ControlPorts{.clock = *p.feed,
                                                       .bus = p.feed->bus(),
-                                                      .cycle = *p.cycle,
-                                                      .memory = p.memory,
+                                                      .maps = *p.maps,
                                                       .loader = p.loader,
                                                       .notes = p.events,
                                                       .overload = p.overload,

@@ -30,7 +30,8 @@ ByteCount Residency::table_bytes(std::size_t zones) noexcept {
 
 Residency::Residency(std::size_t zones, const ResidencyLimits& limits)
     : limits_(limits),
-      slot_count_(slots_within(limits.budget, limits.fixed, limits.slot_bytes)),
+      slot_count_(std::min(slots_within(limits.budget, limits.fixed, limits.slot_bytes),
+                           limits.most_slots)),
       records_(zones),
       links_(zones),
       timer_links_(zones),
@@ -45,7 +46,7 @@ bool Residency::fits(ZoneNeed need, NeedSum available) const noexcept {
 }
 
 NeedSum Residency::free() const noexcept {
-  return {slot_count_ - used_.slots, signature_limit(limits_) - used_.signatures};
+  return {slot_count_ - used_.slots - set_aside_, signature_limit(limits_) - used_.signatures};
 }
 
 Result<void> Residency::check(ZoneId zone, ZoneNeed need, Purpose purpose) const noexcept {
@@ -65,10 +66,29 @@ Result<void> Residency::check(ZoneId zone, ZoneNeed need, Purpose purpose) const
   return {};
 }
 
+Result<void> Residency::set_aside(ByteCount bytes, std::uint32_t slots) noexcept {
+  const std::uint64_t all =
+      slots + (bytes + limits_.slot_bytes - 1) / std::max<ByteCount>(limits_.slot_bytes, 1);
+  if (all > free().slots) return {ErrorCode::kNoRoom, static_cast<std::int64_t>(all)};
+  set_aside_ = all;
+  return {};
+}
+
+void Residency::give_up_set_aside() noexcept { set_aside_ = 0; }
+
+Result<Eviction> Residency::drop(ZoneId zone) noexcept {
+  if (records_[zone].state != ZoneState::kResident) return ErrorCode::kNotFound;
+  return evict(zone);
+}
+
 Eviction Residency::evict_coldest() noexcept {
   const ZoneId coldest = evictable_.coldest();
   const ZoneId zone = coldest != kNoZone ? coldest : leased_.coldest();
   ZP_REQUIRE(zone != kNoZone);
+  return evict(zone);
+}
+
+Eviction Residency::evict(ZoneId zone) noexcept {
   Record& record = records_[zone];
   take_off_list(zone);
   end_leases(zone);

@@ -31,7 +31,8 @@ struct ResidencyLimits {
   // Of the slots and signatures that two zones joined by a portal take together, the most there
   // are: what pins must leave free.
   NeedSum largest_pair;
-  std::int64_t lease_ns = 0;  // how long a lease lasts unless released before
+  std::int64_t lease_ns = 0;               // how long a lease lasts unless released before
+  std::uint32_t most_slots = kNoSlot - 1;  // that there are, whatever the budget would pay for
 };
 
 // A zone that admit() unloaded. Its slots belong to the receiver, who gives them to the SlotPool.
@@ -111,6 +112,17 @@ class Residency {
   Result<void> pin(ZoneId zone, ZoneNeed need) noexcept;
   void unpin(ZoneId zone) noexcept;
 
+  // Charges bytes and slots for something that is no zone (another map on its way in), if there is
+  // room for them without evicting anything; else kNoRoom, and nothing has changed.
+  Result<void> set_aside(ByteCount bytes, std::uint32_t slots) noexcept;
+  void give_up_set_aside() noexcept;
+
+  // Evicts a zone that is resident, whoever wants it. kNotFound when it is not.
+  Result<Eviction> drop(ZoneId zone) noexcept;
+
+  // Counts on from another map's counters.
+  void count_on(const ResidencyCounters& counters) noexcept { counters_ = counters; }
+
   // While frozen nothing is evicted: admit() says kNoRoom where it would have to.
   void freeze(bool frozen) noexcept { frozen_ = frozen; }
   bool frozen() const noexcept { return frozen_; }
@@ -137,7 +149,9 @@ class Residency {
 
   std::size_t zone_count() const noexcept { return records_.size(); }
   std::uint32_t slot_count() const noexcept { return slot_count_; }
-  ByteCount charged() const noexcept { return limits_.fixed + used_.slots * limits_.slot_bytes; }
+  ByteCount charged() const noexcept {
+    return limits_.fixed + (used_.slots + set_aside_) * limits_.slot_bytes;
+  }
   std::uint64_t signatures() const noexcept { return used_.signatures; }
   // What zones are charged for.
   const NeedSum& used_sum() const noexcept { return used_; }
@@ -174,6 +188,7 @@ class Residency {
   bool fits(ZoneNeed need, NeedSum available) const noexcept;
   NeedSum free() const noexcept;
   Eviction evict_coldest() noexcept;
+  Eviction evict(ZoneId zone) noexcept;
   void open(ZoneId zone, ZoneNeed need) noexcept;
   void discharge(Record& record) noexcept;
   void put_on_list(ZoneId zone) noexcept;
@@ -191,6 +206,7 @@ class Residency {
   NeedSum used_;
   NeedSum resident_;
   NeedSum pinned_;
+  std::uint64_t set_aside_ = 0;  // slots, or the bytes of as many
   bool frozen_ = false;
   ResidencyCounters counters_;
 };

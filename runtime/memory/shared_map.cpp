@@ -34,6 +34,7 @@ Result<SharedMap> SharedMap::lay_out(std::span<std::byte> memory, std::uint32_t 
     return ErrorCode::kMismatch;
   }
   SharedMap map(memory.data());
+  for (std::uint32_t zone = 0; zone < zone_capacity; ++zone) map.withdraw(zone);
   const Result<void> begun = map.begin_map(0);
   ZP_REQUIRE(begun.ok());
   return map;
@@ -42,7 +43,6 @@ Result<SharedMap> SharedMap::lay_out(std::span<std::byte> memory, std::uint32_t 
 Result<void> SharedMap::begin_map(std::uint32_t zones) noexcept {
   if (zones > header_->zone_capacity) return {ErrorCode::kTooLarge, zones};
   header_->epoch.fetch_add(1, std::memory_order_acq_rel);
-  for (std::uint32_t zone = 0; zone < header_->zone_capacity; ++zone) withdraw(zone);
   header_->zone_count.store(zones, std::memory_order_release);
   return {};
 }

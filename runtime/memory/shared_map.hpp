@@ -27,8 +27,9 @@ class SharedMap final : public ZoneDirectory {
   void publish(ZoneId zone, std::uint32_t generation, const SlotChain& slots) noexcept override;
   void withdraw(ZoneId zone) noexcept override;
 
-  // All zones are withdrawn and another map's take their places. kTooLarge beyond the capacity.
-  Result<void> begin_map(std::uint32_t zones) noexcept;
+  // Another map's zones take the places of the last one's, all of which were withdrawn. kTooLarge
+  // beyond the capacity.
+  Result<void> begin_map(std::uint32_t zones) noexcept override;
 
   std::uint32_t slot_count() const noexcept { return header_->slot_count; }
   std::uint32_t zone_capacity() const noexcept { return header_->zone_capacity; }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "platform/base/result.hpp"
 #include "runtime/memory/slot_pool.hpp"
 #include "runtime/pack_format/ids.hpp"
 
@@ -19,6 +20,10 @@ class ZoneDirectory {
 
   // Called before the zone's slots are handed on: what is read from now on is not valid.
   virtual void withdraw(ZoneId zone) noexcept = 0;
+
+  // Another map of so many zones begins; all of the last one's were withdrawn. kTooLarge when there
+  // is no room for so many: nothing has changed.
+  virtual Result<void> begin_map(std::uint32_t zones) noexcept = 0;
 };
 
 }  // namespace zonepack

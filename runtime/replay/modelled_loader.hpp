@@ -52,6 +52,7 @@ class ModelledLoader final : public ZoneLoader {
   void load(const LoadRequest& request) noexcept override;
   void cancel() noexcept override;
   void take_back(SlotChain slots) noexcept override { pool_.give_back(slots); }
+  void use(const Catalog&) noexcept override {}  // of the work given: one map, or one like it
   std::optional<LoadResult> poll() noexcept override;
 
   const SlotPool& pool() const noexcept { return pool_; }

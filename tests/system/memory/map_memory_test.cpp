@@ -62,6 +62,7 @@ struct NullLoader final : ZoneLoader {
   void load(const LoadRequest&) noexcept override {}
   void cancel() noexcept override {}
   void take_back(SlotChain) noexcept override {}
+  void use(const Catalog&) noexcept override {}
   std::optional<LoadResult> poll() noexcept override { return std::nullopt; }
 };
 

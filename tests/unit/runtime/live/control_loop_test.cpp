@@ -61,8 +61,7 @@ class Loop : public testing::Test {
     settings.most_frames = 4;
     ControlLoop loop(settings, {.clock = clock,
                                 .bus = clock.bus,
-                                .cycle = cycle,
-                                .memory = memory,
+                                .maps = maps,
                                 .loader = loader,
                                 .notes = notes,
                                 .overload = overload,
@@ -88,6 +87,9 @@ class Loop : public testing::Test {
   OverloadCounters overload;
   EventFanOut notes{queue, &service, overload};
   Cycle cycle{testing_support::sample_robot(), {graph, needs, load_s, {}, memory, loader, notes}};
+  Catalog catalog;
+  MapInUse in_use{catalog, graph, needs, memory, cycle};
+  MapRun maps{in_use, loader, nullptr};
   SpscQueue<PoseCorrection> logged{8}, poses{64};
   SpscQueue<Command> commands{64};
   SpscQueue<CommandReply> replies{8};

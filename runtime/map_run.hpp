@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "runtime/cycle.hpp"
+#include "runtime/map/catalog.hpp"
+#include "runtime/memory/zone_directory.hpp"
+
+namespace zonepack {
+
+// A map in use, or prepared to be: all of it outlives its use. Prepared by a thread that may take
+// its time; touched by the control thread alone from the offer until it is given back.
+struct MapInUse {
+  const Catalog& catalog;
+  const ZoneGraph& graph;
+  std::span<const ZoneNeed> needs;
+  Residency& memory;
+  Cycle& cycle;  // of this memory
+};
+
+// The cycle over the map in use, and the change to another version of it while the robot drives:
+//
+//   1. nothing new is loaded; a load under way ends; zones but the robot's own are evicted, at most
+//      one a cycle; then room for the new map's tables and its zone at the robot's pose is set
+//      aside
+//   2. that zone is loaded from the new map
+//   3. between two cycles, the new map takes the old one's place, pose and odometry going on; room
+//      for the old one's tables stays set aside until the command kMapFreed says that they are gone
+//
+// If there is no room, eviction is frozen, or the zone cannot be loaded (within kMostWait_ns), the
+// old map stays, its zones are loaded again, and the event says why. The budget holds throughout.
+//
+// Invariant, real-time, threads: as of Cycle.
+class MapRun {
+ public:
+  static constexpr std::int64_t kMostWait_ns = 30'000'000'000;
+
+  // Both outlive this object; `directory` may be null.
+  MapRun(MapInUse& map, ZoneLoader& loader, ZoneDirectory* directory) noexcept
+      : map_(&map), loader_(loader), directory_(directory) {}
+
+  // A cycle. What the loader answers for a map on offer is taken out of `input.loads`.
+  const CycleState& run(const CycleInput& input) noexcept;
+
+  // Offers another map; before a run(). False while another is on offer.
+  bool offer(MapInUse& next) noexcept;
+
+  // The map that is not used any more: the one before a change, or an offer that was refused; null
+  // when there is none. Told once.
+  MapInUse* take_unused() noexcept { return std::exchange(unused_, nullptr); }
+
+  MapInUse& map() noexcept { return *map_; }
+  const MapInUse& map() const noexcept { return *map_; }
+  bool changing() const noexcept { return step_ != Step::kNone; }
+
+ private:
+  enum class Step : std::uint8_t { kNone, kMakingRoom, kLoading };
+
+  void begin(std::int64_t now_ns) noexcept;
+  void make_room() noexcept;
+  bool drop_one() noexcept;
+  void take_load(const LoadResult& result) noexcept;
+  void change(const SlotChain& slots) noexcept;
+  void refuse(const char* reason) noexcept;
+
+  MapInUse* map_;
+  ZoneLoader& loader_;
+  ZoneDirectory* directory_;
+  MapInUse* next_ = nullptr;
+  MapInUse* unused_ = nullptr;
+  Step step_ = Step::kNone;
+  ZoneId zone_ = kNoZone;  // of the next map, at the robot's pose
+  ZoneId kept_ = kNoZone;  // of the map in use: the robot's own when the change began
+  ZoneId looked_at_ = 0;   // zones before this one are evicted, but for kept_
+  std::int64_t begun_ns_ = 0;
+};
+
+}  // namespace zonepack

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/map_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "runtime/replay/modelled_loader.hpp"
+#include "tests/support/rooms.hpp"
+#include "tests/support/sample_catalog.hpp"
+
+namespace zonepack {
+namespace {
+
+// Three rooms a, b, c in a row (rooms.hpp), 4 slots of 100 bytes each, room for nine; tables of 100
+// bytes. A load takes 0.1 s.
+struct World {
+  World(ZoneLoader& loader, EventSink& events, ZoneDirectory& directory, ByteCount budget)
+      : memory(3, {budget, 100, 100, 0, {8, 20}, 0}),
+        cycle(testing_support::sample_robot(),
+              {graph, needs, load_s, {}, memory, loader, events, &directory}) {}
+
+  Catalog catalog;
+  const ZoneGraph graph = testing_support::three_rooms();
+  const std::vector<ZoneNeed> needs = std::vector<ZoneNeed>(3, ZoneNeed{4, 10});
+  const std::vector<float> load_s = std::vector<float>(3, 0.12f);
+  Residency memory;
+  Cycle cycle;
+  MapInUse in_use{catalog, graph, needs, memory, cycle};
+};
+
+class MapChange : public testing::Test, public EventSink, public ZoneDirectory, public ZoneFiller {
+ protected:
+  MapChange() { words.reserve(4096); }
+
+  void on_event(const Event& event) noexcept override {
+    std::string word = to_string(event.kind);
+    if (event.zone != kNoZone) word += " " + old_world.graph.name(event.zone);
+    if (event.reason != nullptr) word += std::string(" ") + event.reason;
+    words.push_back(word);
+  }
+  void publish(ZoneId zone, std::uint32_t, const SlotChain&) noexcept override {
+    readable[zone] = true;
+  }
+  void withdraw(ZoneId zone) noexcept override { readable[zone] = false; }
+  Result<void> begin_map(std::uint32_t) noexcept override {
+    for (const bool zone : readable) EXPECT_FALSE(zone);
+    return {};
+  }
+  Result<void> fill(ZoneId, std::span<const SlotIndex>) override {
+    if (broken) return ErrorCode::kBadChecksum;
+    return {};
+  }
+
+  void step(std::vector<PoseCorrection> fixes = {}, std::vector<Command> commands = {}) {
+    now_ns += 10'000'000;
+    loader.advance_to(now_ns);
+    std::vector<LoadResult> loads;
+    while (const auto load = loader.poll()) loads.push_back(*load);
+    maps.run({now_ns, {}, fixes, loads, commands});
+    EXPECT_LE(old_world.memory.charged(), 1000u);
+    EXPECT_LE(new_world.memory.charged(), 1000u);
+  }
+
+  void stand(int cycles) {
+    for (int i = 0; i < cycles; ++i) step();
+  }
+
+  // Trusted in room a, whose neighbour is pinned into memory too.
+  void stand_in_a() {
+    step();
+    step({{now_ns, now_ns, {2, 2, 0}, 0.03, 0.03, 0.01}});
+    Command hint;
+    hint.kind = Command::Kind::kRouteHint;
+    hint.route_length = 2;
+    hint.route = {0, 1};
+    step({{now_ns, now_ns, {2, 2, 0}, 0.03, 0.03, 0.01}}, {hint});
+    stand(40);
+    ASSERT_TRUE(old_world.memory.resident(0) && old_world.memory.resident(1));
+    ASSERT_TRUE(maps.map().cycle.state().map_ready);
+    words.clear();
+  }
+
+  bool told(const std::string& word) const {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  }
+
+  bool readable[3] = {};
+  bool broken = false;
+  std::vector<std::string> words;
+  std::vector<LoadWork> work = std::vector<LoadWork>(3, LoadWork{100, 0});
+  ModelledLoader loader{9, work, {1000, 1000}, this};
+  World old_world{loader, *this, *this, 1000};
+  World new_world{loader, *this, *this, 1000};
+  MapRun maps{old_world.in_use, loader, this};
+  std::int64_t now_ns = 1'000'000'000;
+};
+
+TEST_F(MapChange, LoadsTheRobotsZoneOfTheNewMapBesideTheOldOneThenChanges) {
+  stand_in_a();
+  ASSERT_TRUE(maps.offer(new_world.in_use));
+  step();
+  EXPECT_EQ(words, (std::vector<std::string>{"map_offered", "evicted b"}));
+  stand(4);
+  EXPECT_TRUE(old_world.memory.resident(0));  // still served, while the new one's is loaded
+  EXPECT_EQ(old_world.memory.charged(), 100u + 400 + 400 + 100);
+  stand(20);
+  EXPECT_EQ(&maps.map(), &new_world.in_use);
+  EXPECT_TRUE(new_world.memory.resident(0));
+  EXPECT_TRUE(readable[0]);
+  EXPECT_TRUE(maps.map().cycle.state().map_ready);
+  EXPECT_EQ(maps.take_unused(), &old_world.in_use);
+  EXPECT_EQ(maps.take_unused(), nullptr);
+  EXPECT_EQ(maps.map().cycle.state().pose.T_map_base.x_m, 2);
+  EXPECT_EQ(new_world.memory.counters().zones_loaded, 3u);  // a and b, and a again
+}
+
+TEST_F(MapChange, KeepsRoomForTheOldTablesUntilTheyAreGone) {
+  stand_in_a();
+  maps.offer(new_world.in_use);
+  stand(30);
+  EXPECT_EQ(new_world.memory.charged(), 100u + 400 + 100);
+  Command freed;
+  freed.kind = Command::Kind::kMapFreed;
+  step({}, {freed});
+  EXPECT_EQ(new_world.memory.charged(), 100u + 400);
+}
+
+TEST_F(MapChange, KeepsTheOldMapWhenTheZoneCannotBeLoaded) {
+  stand_in_a();
+  broken = true;
+  maps.offer(new_world.in_use);
+  stand(30);
+  EXPECT_TRUE(told("map_refused bad checksum"));
+  EXPECT_EQ(&maps.map(), &old_world.in_use);
+  EXPECT_EQ(maps.take_unused(), &new_world.in_use);
+  EXPECT_TRUE(old_world.memory.resident(0) && readable[0]);
+  broken = false;
+  stand(200);
+  EXPECT_TRUE(old_world.memory.resident(1));  // loads go on
+}
+
+TEST_F(MapChange, KeepsTheOldMapWhenBothDoNotFit) {
+  World large{loader, *this, *this, 100 + 900};
+  const std::vector<ZoneNeed> needs(3, ZoneNeed{5, 10});
+  MapInUse in_use{large.catalog, large.graph, needs, large.memory, large.cycle};
+  stand_in_a();
+  maps.offer(in_use);  // 100 + 400 + 100 + 500 > 1000
+  stand(5);
+  EXPECT_TRUE(told("map_refused no room"));
+  EXPECT_TRUE(old_world.memory.resident(0));
+}
+
+TEST_F(MapChange, IsRefusedWhileNothingMayBeEvicted) {
+  stand_in_a();
+  Command freeze;
+  freeze.kind = Command::Kind::kFreeze;
+  step({}, {freeze});
+  maps.offer(new_world.in_use);
+  step();
+  EXPECT_TRUE(told("map_refused frozen"));
+  EXPECT_TRUE(old_world.memory.resident(1));
+}
+
+TEST_F(MapChange, ChangesAtOnceWhereNoPoseIsKnown) {
+  step();
+  maps.offer(new_world.in_use);
+  stand(2);
+  EXPECT_TRUE(told("map_changed"));
+  EXPECT_EQ(&maps.map(), &new_world.in_use);
+}
+
+}  // namespace
+}  // namespace zonepack
