@@ -14,6 +14,7 @@ class RecordedLoader final : public ZoneLoader {
   void load(const LoadRequest& request) noexcept override { asked_ = request; }
   void cancel() noexcept override {}
   void take_back(SlotChain) noexcept override {}
+  void use(const Catalog&) noexcept override {}
   std::optional<LoadResult> poll() noexcept override { return std::nullopt; }
 
   const std::optional<LoadRequest>& asked() const noexcept { return asked_; }

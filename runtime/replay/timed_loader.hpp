@@ -26,6 +26,7 @@ class TimedLoader final : public ZoneLoader {
   }
   void cancel() noexcept override { cancelled_ = true; }
   void take_back(SlotChain) noexcept override {}
+  void use(const Catalog&) noexcept override {}
   std::optional<LoadResult> poll() noexcept override {
     if (!under_way_ || (!cancelled_ && now_ns_ < done_ns_)) return std::nullopt;
     const LoadRequest done = *under_way_;
