@@ -36,15 +36,15 @@ std::uint32_t SharedZones::slots_for(std::span<const ChunkRef> chunks) {
   return placement.slots();
 }
 
-std::uint32_t SharedZones::put(ZoneId zone, std::span<const ChunkRef> chunks) {
+SlotChain SharedZones::fill(std::span<const ChunkRef> chunks) {
   SlotChain chain;
-  ZP_REQUIRE(!chains_.contains(zone) && pool_.take(slots_for(chunks), chain));
-  Placement placement;
-  SlotIndex slot = chain.head;
-  std::uint32_t at_slot = 0, in_slot = 0;
+  ZP_REQUIRE(pool_.take(slots_for(chunks), chain));
   for (SlotIndex s = chain.head; s != kNoSlot; s = pool_.next(s)) {
     std::ranges::fill(map_.chunks(s), SharedChunk{});
   }
+  Placement placement;
+  SlotIndex slot = chain.head;
+  std::uint32_t at_slot = 0, in_slot = 0;
   for (const ChunkRef& chunk : chunks) {
     const auto place = placement.add(static_cast<std::uint32_t>(chunk.bytes.size()));
     for (; at_slot < place.slot; ++at_slot, in_slot = 0) slot = pool_.next(slot);
@@ -53,6 +53,12 @@ std::uint32_t SharedZones::put(ZoneId zone, std::span<const ChunkRef> chunks) {
                                     static_cast<std::uint8_t>(place.offset / kChunkAlignment),
                                     static_cast<std::uint16_t>(chunk.bytes.size())};
   }
+  return chain;
+}
+
+std::uint32_t SharedZones::put(ZoneId zone, std::span<const ChunkRef> chunks) {
+  ZP_REQUIRE(!chains_.contains(zone));
+  const SlotChain chain = fill(chunks);
   const std::uint32_t generation = ++generations_[zone];
   map_.publish(zone, generation, chain);
   chains_[zone] = chain;

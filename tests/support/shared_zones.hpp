@@ -24,7 +24,11 @@ class SharedZones {
   // The slots that chunks take.
   static std::uint32_t slots_for(std::span<const ChunkRef> chunks);
 
-  // Fills free slots; the zone must not be there. Returns its generation.
+  // Takes slots and fills them, for a caller that publishes them itself.
+  SlotChain fill(std::span<const ChunkRef> chunks);
+  void give_back(SlotChain chain) { pool_.give_back(chain); }
+
+  // Fills slots and publishes them; the zone must not be there. Returns its generation.
   std::uint32_t put(ZoneId zone, std::span<const ChunkRef> chunks);
   void remove(ZoneId zone);
 

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "runtime/client/signature_view.hpp"
+#include "runtime/pack_format/pack_reader.hpp"
+
+namespace zonepack::test_support {
+
+// Contents that zones are filled with in turn, all different: whoever mixes two of them reads what
+// neither holds.
+class ZoneImages {
+ public:
+  explicit ZoneImages(std::uint32_t count);
+
+  std::uint32_t size() const { return static_cast<std::uint32_t>(packs_.size()); }
+  const std::vector<ChunkRef>& chunks(std::uint32_t image) const { return packs_[image].chunks(); }
+  std::uint32_t slots(std::uint32_t image) const { return slots_[image]; }
+  std::uint32_t signatures(std::uint32_t image) const { return packs_[image].view().size(); }
+
+  // What these signatures are one whole image of: every value read has a part in it. size(): none.
+  std::uint32_t recognise(const ZoneSignatures& signatures) const;
+
+ private:
+  std::vector<DecodedPack> packs_;
+  std::vector<std::uint32_t> slots_;
+  std::vector<std::uint64_t> digests_;
+};
+
+// A number made of every value of every signature, read through the accessors of clients.
+std::uint64_t digest_of(const ZoneSignatures& signatures);
+
+}  // namespace zonepack::test_support
