@@ -26,8 +26,9 @@ struct Covariance2 {
 struct PoseEstimate {
   std::int64_t t_ns = 0;  // the clock of the cycle
   Pose2 T_map_base;
-  Covariance2 covariance;  // in the map
-  double speed_m_s = 0;    // forward, from odometry; 0 when that is stale
+  Covariance2 covariance;   // in the map
+  double speed_m_s = 0;     // forward, from odometry; 0 when that is stale
+  double sideways_m_s = 0;  // to the left; robots with mecanum or omni wheels only
   double yaw_rate_rad_s = 0;
   bool valid = false;    // a pose is known at all
   bool trusted = false;  // two absolute fixes agreed through odometry

@@ -148,14 +148,17 @@ void PoseFilter::predict(const OdometryIncrement& increment) noexcept {
   const double seconds = std::max(seconds_between(increment.from_ns, increment.to_ns), 0.0);
   const double weight = seconds / (settings_.speed_filter_s + seconds);
   speed_m_s_ += (increment.speed_m_s - speed_m_s_) * weight;
+  sideways_m_s_ += (increment.sideways_m_s - sideways_m_s_) * weight;
   yaw_rate_rad_s_ += (increment.yaw_rate_rad_s - yaw_rate_rad_s_) * weight;
-  lost_speed_m_s_ = speed_m_s_;
+  lost_speed_m_s_ =
+      sideways_m_s_ == 0 ? speed_m_s_ : std::sqrt(square(speed_m_s_) + square(sideways_m_s_));
   lost_yaw_rate_rad_s_ = yaw_rate_rad_s_;
   list_hypotheses();
 }
 
 void PoseFilter::drift_until(std::int64_t now_ns) noexcept {
   speed_m_s_ = 0;
+  sideways_m_s_ = 0;
   yaw_rate_rad_s_ = 0;
   if (history_.empty()) return;
   const double seconds = seconds_between(history_.back().t_ns, now_ns);
@@ -189,9 +192,11 @@ UncertainPose PoseFilter::measured(const PoseCorrection& fix) const noexcept {
 UncertainPose PoseFilter::motion_since_newest(double seconds) const noexcept {
   const double s = std::clamp(seconds, 0.0, settings_.extrapolate_s);
   const double distance = speed_m_s_ * s;
+  const double sideways = sideways_m_s_ * s;
   const double turn = yaw_rate_rad_s_ * s;
   // A tenth of the way: the speed may change meanwhile.
-  return {along_arc(distance, turn), uncertain({}, distance * 0.1, turn * 0.1).covariance};
+  const double way = sideways == 0 ? distance : std::sqrt(square(distance) + square(sideways));
+  return {along_arc(distance, sideways, turn), uncertain({}, way * 0.1, turn * 0.1).covariance};
 }
 
 CorrectionVerdict PoseFilter::count(CorrectionVerdict verdict) noexcept {
@@ -297,6 +302,7 @@ PoseEstimate PoseFilter::estimate(std::int64_t now_ns) const noexcept {
   estimate.T_map_base = now.pose;
   estimate.covariance = now.covariance;
   estimate.speed_m_s = speed_m_s_;
+  estimate.sideways_m_s = sideways_m_s_;
   estimate.yaw_rate_rad_s = yaw_rate_rad_s_;
   estimate.valid = true;
   return estimate;

@@ -126,6 +126,7 @@ class PoseFilter {
   std::array<PoseHypothesis, kMaxHypotheses> hypotheses_;
   std::size_t hypothesis_count_ = 0;
   double speed_m_s_ = 0;
+  double sideways_m_s_ = 0;
   double yaw_rate_rad_s_ = 0;
   double lost_speed_m_s_ = 0;  // when odometry was last fresh
   double lost_yaw_rate_rad_s_ = 0;

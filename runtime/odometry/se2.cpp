@@ -74,6 +74,15 @@ Pose2 along_arc(double distance_m, double turn_rad) noexcept {
   return {chord * det_cos(half), chord * det_sin(half), wrap_angle(turn_rad)};
 }
 
+Pose2 along_arc(double forward_m, double sideways_m, double turn_rad) noexcept {
+  Pose2 pose = along_arc(forward_m, turn_rad);
+  if (sideways_m == 0) return pose;
+  const Pose2 aside = along_arc(sideways_m, turn_rad);
+  pose.x_m -= aside.y_m;
+  pose.y_m += aside.x_m;
+  return pose;
+}
+
 Pose2 part_of_arc(const Pose2& motion, double part) noexcept {
   // Turned back by half the turn, the chord lies along x but for slip, which is split evenly.
   const double half = motion.yaw_rad * 0.5;

@@ -19,6 +19,10 @@ Pose2 between(const Pose2& T_a_b, const Pose2& T_a_c) noexcept;
 // The pose reached by going `distance_m` along an arc while turning by `turn_rad`, exactly.
 Pose2 along_arc(double distance_m, double turn_rad) noexcept;
 
+// The same for a motion that goes `sideways_m` to the left of base_link at the same time, both at
+// constant speed.
+Pose2 along_arc(double forward_m, double sideways_m, double turn_rad) noexcept;
+
 // The first `part` (0 to 1) of a motion that ran at constant speed along one arc.
 Pose2 part_of_arc(const Pose2& motion, double part) noexcept;
 

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "platform/can_bus.hpp"
 #include "runtime/odometry/can_signals.hpp"
+#include "runtime/odometry/canopen_watch.hpp"
 #include "runtime/odometry/se2.hpp"
+#include "runtime/odometry/wheel_model.hpp"
 
 namespace zonepack {
 
-enum class OdometryModel : std::uint8_t {
-  kDifferentialPositions,  // left and right wheel positions, counters that may wrap
-  kWheelSpeeds,            // left and right wheel speeds
-  kTwist,                  // forward speed and yaw rate
-};
-
-// How signals become motion. `left` and `right` mean, by model: wheel positions in units (metres,
-// turns, radians ...), wheel speeds in units per second, or, for kTwist, forward speed (m/s) and
-// yaw rate (rad/s).
+// How signals become motion. By model the signals are, in this order: wheels (wheel_model.hpp), as
+// positions in units (metres, turns, ticks ...) or as speeds in units per second; the driven axle
+// and the steering angle (rad); forward speed (m/s) and yaw rate (rad/s).
 struct WheelOdometrySettings {
   OdometryModel model = OdometryModel::kDifferentialPositions;
-  CanSignal left, right;
-  double metres_per_unit = 1;         // ground covered per unit of a wheel signal; not for kTwist
-  double track_m = 0.413;             // between the wheels' contact points; not for kTwist
+  WheelGeometry geometry;
+  std::array<CanSignal, kMostWheels> signals{};
+  PerWheel metres_per_unit = {1, 1, 1, 1};  // ground covered per unit of a wheel; otherwise a sign
+  double steering_offset_rad = 0;           // added to the steering angle
+  CanOpenWatchSettings canopen;
   double max_speed_m_s = 3;           // of the robot's middle; more is refused
   double max_yaw_rate_rad_s = 6;      // more is refused
   double max_acceleration_m_s2 = 10;  // of either wheel from sample to sample, over the resolution
@@ -41,13 +41,17 @@ struct WheelOdometrySettings {
   double sigma_gap_rad_per_s = 0.5;
 };
 
+// The signals that the model reads, for filters on the bus; CANopen's frames come beside them.
+std::span<const CanSignal> signals_of(const WheelOdometrySettings& settings) noexcept;
+
 // One step of dead reckoning: where base_link at to_ns stands, seen from base_link at from_ns, and
 // how sure that is (covariance in the frame at from_ns). Exact for motion along one arc.
 struct OdometryIncrement {
   std::int64_t from_ns = 0;
   std::int64_t to_ns = 0;  // not after from_ns only when the clock ran back
   UncertainPose motion;
-  double speed_m_s = 0;  // forward, over the step
+  double speed_m_s = 0;     // forward, over the step
+  double sideways_m_s = 0;  // to the left
   double yaw_rate_rad_s = 0;
 };
 
@@ -58,16 +62,19 @@ struct WheelOdometryCounters {
   std::uint64_t gaps = 0;      // pauses longer than gap_s that an increment bridged
   std::uint64_t rebased =
       0;  // new starting points after a jump that stayed or a clock that ran back
+  std::uint64_t unwatched = 0;  // of the refused: while a watched CANopen node or SYNC was missing
 };
 
-// Motion of a differential drive from the frames of a CAN bus.
+// Motion of a wheeled robot from the frames of a CAN bus.
 //
-// A sample is complete when both signals have come (one frame may carry both); its stamp is the
-// later one's. Samples that are not newer than the last are refused, and so is a step faster or
+// A sample is complete when all signals have come (one frame may carry several); its stamp is the
+// latest one's. Samples that are not newer than the last are refused, and so is a step faster or
 // more abrupt than the limits. When the next sample does not continue the last good one, but does
 // continue the refused one, the counter was reset or the clock was set back: odometry goes on from
 // there, and the motion that was lost appears as uncertainty. Counters may start anywhere and wrap
-// at any length. Real-time: no allocation, bounded work per frame.   Threads: one.
+// at any length. While a watched CANopen node or SYNC is missing, frames are refused, so that
+// odometry goes stale by its timeout; a node that starts anew counts as a counter reset. Real-time:
+// no allocation, bounded work per frame.   Threads: one.
 class WheelOdometry {
  public:
   // The signals must be valid.
@@ -83,6 +90,7 @@ class WheelOdometry {
   std::optional<std::int64_t> newest_ns() const noexcept;
 
   const WheelOdometryCounters& counters() const noexcept { return counters_; }
+  const CanOpenCounters& canopen_counters() const noexcept { return watch_.counters(); }
 
  private:
   struct Side {
@@ -92,17 +100,19 @@ class WheelOdometry {
   };
   struct Sample {
     std::int64_t stamp_ns = 0;
-    SignalReading left, right;
+    std::array<SignalReading, kMostWheels> signals{};
   };
-  // Motion from one sample to the next; speeds of (left, right), or (forward, yaw rate) of a twist.
+  // Motion from one sample to the next.
   struct Step {
     double seconds = 0;
-    double distance_m = 0;
-    double turn_rad = 0;
-    double speed_left = 0, speed_right = 0;
+    BodyMotion motion;
+    PerWheel speeds{};  // of each signal: m/s of wheels; of a twist forward and yaw rate
+    double steering_rad = 0;
   };
 
+  bool note_readings(const CanFrame& frame) noexcept;
   std::optional<Sample> complete_sample(const CanFrame& frame) noexcept;
+  std::optional<OdometryIncrement> start_anew(const Sample& sample) noexcept;
   Step step_between(const Sample& from, const Sample& to) const noexcept;
   double units_moved(const CanSignal& signal, const SignalReading& from,
                      const SignalReading& to) const noexcept;
@@ -113,11 +123,15 @@ class WheelOdometry {
   Covariance2 noise_of(const Step& step) const noexcept;
 
   WheelOdometrySettings settings_;
-  double resolution_left_, resolution_right_;
-  Side left_, right_;
+  WheelModel model_;
+  bool positions_;
+  PerWheel resolution_{};  // of a wheel, m or m/s
+  CanOpenWatch watch_;
+  std::array<Side, kMostWheels> sides_{};
   std::optional<Sample> last_;     // accepted
   std::optional<Step> last_step_;  // that led to last_; none after a start or a gap
   std::optional<Sample> suspect_;  // the newest refused one
+  bool booted_ = false;            // counters begin again with the next sample
   WheelOdometryCounters counters_;
 };
 

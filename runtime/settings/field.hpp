@@ -37,11 +37,14 @@ template <typename Enum>
 struct EnumWords;
 template <>
 struct EnumWords<OdometryModel> {
-  static constexpr const char* kWords[] = {"differential-positions", "wheel-speeds", "twist"};
+  static constexpr const char* kWords[] = {
+      "differential-positions", "wheel-speeds",     "twist",
+      "ackermann-positions",    "ackermann-speeds", "mecanum-positions",
+      "mecanum-speeds",         "omni-positions",   "omni-speeds"};
 };
 template <>
 struct EnumWords<WheelUnit> {
-  static constexpr const char* kWords[] = {"metres", "radians", "turns"};
+  static constexpr const char* kWords[] = {"metres", "radians", "turns", "rpm", "erpm", "ticks"};
 };
 template <>
 struct EnumWords<ByteOrder> {
@@ -70,6 +73,14 @@ struct MultiplexText {
   std::uint64_t value = 0;
 };
 
+// A node under can.canopen.nodes.
+struct CanOpenNodeText {
+  std::uint32_t node = 0;
+  bool heartbeat = true;
+  std::vector<std::string> tpdo1, tpdo2, tpdo3, tpdo4;
+  std::uint32_t tpdo1_id = 0, tpdo2_id = 0, tpdo3_id = 0, tpdo4_id = 0;
+};
+
 // The tables (settings_tables.cpp).
 const Fields<MapSettings>& map_fields();
 const Fields<MemorySettings>& memory_fields();
@@ -77,7 +88,10 @@ const Fields<LoadingSettings>& loading_fields();
 const Fields<CanSettings>& can_fields();
 const Fields<SignalText>& signal_fields();
 const Fields<MultiplexText>& multiplex_fields();
+const Fields<CanOpenWatchSettings>& canopen_fields();
+const Fields<CanOpenNodeText>& canopen_node_fields();
 const Fields<OdometrySettings>& odometry_fields();
+const Fields<WheelGeometry>& geometry_fields();       // keys of the section odometry, too
 const Fields<WheelOdometrySettings>& wheel_fields();  // keys of the section odometry, too
 const Fields<PoseFilterSettings>& pose_fields();
 const Fields<TrackerSettings>& zones_fields();

@@ -32,7 +32,7 @@ std::string known_words_text(std::string_view word, const std::vector<std::strin
     if (i < kMostShown) all += (i == 0 ? "" : ", ") + known[i];
     if (i == kMostShown) all += " ...";
     const std::size_t size = known[i].size();
-    if (size > word.size() + most || word.size() > size + most) continue;
+    if (word.empty() || size > word.size() + most || word.size() > size + most) continue;
     if (const std::size_t distance = edits(word, known[i]); distance < least) {
       least = distance;
       nearest = &known[i];

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "runtime/odometry/det_math.hpp"
+#include "runtime/settings/canopen_section.hpp"
 #include "runtime/settings/dbc_file.hpp"
 #include "runtime/settings/field.hpp"
 #include "runtime/settings/nearest_word.hpp"
@@ -112,6 +113,7 @@ void read_can(YamlSection& file, const std::string& path, CanSettings& can, Sign
   for (const auto& [name, node] : signals.entries()) {
     read_signal_entry(name, node, faults, can.signals);
   }
+  read_canopen(section, can, faults);
   section.finish();
   if (can.dbc.empty()) return;
   can.dbc = beside(path, can.dbc);
@@ -125,6 +127,113 @@ void time_out_by_cycle(double longest_cycle_s, double period_hz, double& timeout
   constexpr double kMost_s = 60;
   if (longest_cycle_s <= 0) return;
   timeout_s = std::clamp(std::max(kCycles * longest_cycle_s, 2 / period_hz), kLeast_s, kMost_s);
+}
+
+// A key of the section odometry and the signal that it names.
+struct SignalKey {
+  std::string key;  // as in `invert`, too
+  std::string name;
+};
+
+std::vector<SignalKey> signal_keys(const OdometrySettings& odometry) {
+  const OdometrySettings& o = odometry;
+  switch (o.wheels.model) {
+    case OdometryModel::kDifferentialPositions:
+    case OdometryModel::kWheelSpeeds:
+      return {{"left", o.left}, {"right", o.right}};
+    case OdometryModel::kTwist:
+      return {{"forward", o.forward}, {"yaw_rate", o.yaw_rate}};
+    case OdometryModel::kAckermannPositions:
+    case OdometryModel::kAckermannSpeeds:
+      return {{"forward", o.forward}, {"steering", o.steering}};
+    case OdometryModel::kMecanumPositions:
+    case OdometryModel::kMecanumSpeeds:
+      return {{"front_left", o.front_left},
+              {"front_right", o.front_right},
+              {"rear_left", o.rear_left},
+              {"rear_right", o.rear_right}};
+    case OdometryModel::kOmniPositions:
+    case OdometryModel::kOmniSpeeds:
+      break;
+  }
+  std::vector<SignalKey> keys;
+  for (const std::string& name : o.around) keys.push_back({std::to_string(keys.size() + 1), name});
+  return keys;
+}
+
+// Ground covered per unit of a wheel's signal, both sides alike.
+double metres_per_unit(const OdometrySettings& odometry) {
+  double metres = odometry.scale;
+  if (odometry.unit == WheelUnit::kMetres) return metres;
+  metres *= odometry.wheel_radius_m;
+  if (odometry.unit != WheelUnit::kRadians) metres *= 2 * kPi;
+  if (odometry.unit == WheelUnit::kRpm || odometry.unit == WheelUnit::kErpm) metres /= 60;
+  if (odometry.unit == WheelUnit::kErpm) metres /= odometry.pole_pairs;
+  if (odometry.unit == WheelUnit::kTicks) metres /= odometry.ticks_per_turn;
+  return metres / odometry.gear;
+}
+
+bool is_left(const std::string& key) { return key.ends_with("left"); }
+bool is_right(const std::string& key) { return key.ends_with("right"); }
+
+// What of the keys does not go together.
+void check_units(const YamlSection& section, const OdometrySettings& odometry,
+                 const std::vector<SignalKey>& keys, FaultList& faults) {
+  const auto add = [&](const char* key, const std::string& text) {
+    faults.add(section.mark_of(key), section.path_of(key), text);
+  };
+  const WheelUnit unit = odometry.unit;
+  if ((unit == WheelUnit::kRpm || unit == WheelUnit::kErpm) &&
+      reads_positions(odometry.wheels.model)) {
+    add("unit",
+        "rpm and erpm are speeds, and the model reads positions; allowed: metres, radians, "
+        "turns, ticks, or a model that ends with -speeds");
+  }
+  if (unit == WheelUnit::kTicks && odometry.ticks_per_turn <= 0) {
+    add("ticks_per_turn", "missing; unit: ticks needs it");
+  }
+  if (unit == WheelUnit::kMetres && odometry.gear != 1) {
+    add("gear", "has no meaning for metres; leave it out, or tell the unit of the motor's signals");
+  }
+  const bool sides = !keys.empty() && is_left(keys[0].key);
+  const char* const no_sides = "the model has no left and right side; use scale";
+  if (odometry.scale_left != 1 && !sides) add("scale_left", no_sides);
+  if (odometry.scale_right != 1 && !sides) add("scale_right", no_sides);
+  for (const std::string& word : odometry.invert) {
+    if (std::any_of(keys.begin(), keys.end(), [&](const auto& k) { return k.key == word; }))
+      continue;
+    std::vector<std::string> known;
+    for (const SignalKey& key : keys) known.push_back(key.key);
+    add("invert", "\"" + word + "\" is no signal of this model" + known_words_text(word, known));
+  }
+}
+
+// The signals in the model's order, each with its sign, scale and unit.
+void resolve_signals(const YamlSection& section, SignalNames& names, OdometrySettings& odometry,
+                     FaultList& faults) {
+  WheelOdometrySettings& wheels = odometry.wheels;
+  const std::vector<SignalKey> keys = signal_keys(odometry);
+  const bool omni =
+      wheels.model == OdometryModel::kOmniPositions || wheels.model == OdometryModel::kOmniSpeeds;
+  if (omni && keys.size() != 3 && keys.size() != 4) {
+    faults.add(section.mark_of("around"), section.path_of("around"),
+               "needs the signals of 3 or 4 wheels, has " + std::to_string(keys.size()));
+    return;
+  }
+  check_units(section, odometry, keys, faults);
+  if (omni) wheels.geometry.omni_wheels = keys.size();
+  const std::size_t rolling = WheelModel(wheels.model, wheels.geometry).wheels();
+  const double metres = metres_per_unit(odometry);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const std::string& key = keys[i].key;
+    names.resolve(section, omni ? "around" : key.c_str(), keys[i].name, wheels.signals[i]);
+    double& scale = wheels.metres_per_unit[i];
+    scale = i < rolling ? metres : 1;
+    if (is_left(key)) scale *= odometry.scale_left;
+    if (is_right(key)) scale *= odometry.scale_right;
+    const auto& invert = odometry.invert;
+    if (std::find(invert.begin(), invert.end(), key) != invert.end()) scale = -scale;
+  }
 }
 
 }  // namespace
@@ -141,19 +250,13 @@ void read_odometry(YamlSection& file, const std::string& path, Settings& setting
   YamlSection section(file.take("odometry"), "odometry", faults);
   section.read(odometry_fields(), odometry);
   section.read(wheel_fields(), odometry.wheels);
+  section.read(geometry_fields(), odometry.wheels.geometry);
   section.finish();
-  const bool twist = odometry.wheels.model == OdometryModel::kTwist;
-  names.resolve(section, twist ? "forward" : "left", twist ? odometry.forward : odometry.left,
-                odometry.wheels.left);
-  names.resolve(section, twist ? "yaw_rate" : "right", twist ? odometry.yaw_rate : odometry.right,
-                odometry.wheels.right);
+  resolve_signals(section, names, odometry, faults);
+  odometry.wheels.canopen = settings.can.canopen;
   if (!section.has("timeout")) {
     time_out_by_cycle(names.longest_cycle_s(), settings.cycle.period_hz, odometry.wheels.timeout_s);
   }
-  double metres = odometry.scale;
-  if (odometry.unit != WheelUnit::kMetres) metres *= odometry.wheel_radius_m;
-  if (odometry.unit == WheelUnit::kTurns) metres *= 2 * kPi;
-  odometry.wheels.metres_per_unit = metres;
 }
 
 }  // namespace zonepack

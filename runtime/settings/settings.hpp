@@ -43,21 +43,35 @@ struct LoadingSettings {
 };
 
 struct CanSettings {
-  std::string interface;                     // empty: any
-  std::string dbc;                           // as map.path; empty: not given
-  std::map<std::string, CanSignal> signals;  // and those of the DBC file that odometry names
+  std::string interface;  // empty: any
+  std::string dbc;        // as map.path; empty: not given
+  // Those written out, those of CANopen's process data as NODE.INDEX, and those of the DBC file
+  // that odometry names.
+  std::map<std::string, CanSignal> signals;
+  CanOpenWatchSettings canopen;
 };
 
-enum class WheelUnit : std::uint8_t { kMetres, kRadians, kTurns };
+// Of wheels and, before the gear, their motors: turns a minute, electrical turns a minute, ticks of
+// an encoder. The last three and radians and turns count with the wheel's radius.
+enum class WheelUnit : std::uint8_t { kMetres, kRadians, kTurns, kRpm, kErpm, kTicks };
 
 // WheelOdometrySettings with its signals by name.
 struct OdometrySettings {
   WheelUnit unit = WheelUnit::kMetres;  // of wheel signals after factor and offset
-  double wheel_radius_m = 0.14;         // for radians and turns
+  double wheel_radius_m = 0.14;         // for all but metres
+  double gear = 1;                      // turns of the motor for one of the wheel; not for metres
+  double pole_pairs = 1;                // of the motor, for erpm
+  double ticks_per_turn = 0;            // of what turns the encoder, for ticks; 0: not given
   double scale = 1;                     // true over reported distance, from a calibration run
-  std::string left, right;              // names in can.signals, for positions and speeds
-  std::string forward, yaw_rate;        // for twist
-  WheelOdometrySettings wheels;         // complete once loaded
+  double scale_left = 1;                // beside scale, for the wheels of one side
+  double scale_right = 1;
+  std::vector<std::string> invert;  // keys of signals that count the other way round
+  std::string left, right;          // names of signals: differential
+  std::string forward, yaw_rate;    // twist; forward is Ackermann's driven axle, too
+  std::string steering;             // Ackermann
+  std::string front_left, front_right, rear_left, rear_right;  // mecanum
+  std::vector<std::string> around;                             // omni, counter-clockwise
+  WheelOdometrySettings wheels;                                // complete once loaded
 };
 
 struct CycleSettings {

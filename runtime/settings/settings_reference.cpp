@@ -94,13 +94,17 @@ std::string settings_reference() {
          "is relative to the settings file.\n" +
          head("map") + rows(map_fields()) + head("memory") + rows(memory_fields()) +
          head("loading") + rows(loading_fields()) + head("can") + rows(can_fields()) +
-         "| signals | signals by name | none | what frames hold; see below |\n" +
+         "| signals | signals by name | none | what frames hold; see below |\n"
+         "| canopen | see below | none | CANopen drives |\n" +
          head("can.signals.NAME") + rows(signal_fields()) +
          "| multiplexer | see below | none | bits that tell whether the signal is there |\n" +
-         head("can.signals.NAME.multiplexer") + rows(multiplex_fields()) + head("odometry") +
-         rows(wheel_fields()) + rows(odometry_fields()) + head("pose") + rows(pose_fields()) +
-         head("zones") + rows(zones_fields()) + head("preload") + rows(preload_fields()) +
-         head("cycle") + rows(cycle_fields()) + head("realtime") + rows(realtime_fields());
+         head("can.signals.NAME.multiplexer") + rows(multiplex_fields()) + head("can.canopen") +
+         rows(canopen_fields()) + "| nodes | nodes by name | none | see below |\n" +
+         head("can.canopen.nodes.NAME") + rows(canopen_node_fields()) + head("odometry") +
+         rows(wheel_fields()) + rows(geometry_fields()) + rows(odometry_fields()) + head("pose") +
+         rows(pose_fields()) + head("zones") + rows(zones_fields()) + head("preload") +
+         rows(preload_fields()) + head("cycle") + rows(cycle_fields()) + head("realtime") +
+         rows(realtime_fields());
 }
 
 }  // namespace zonepack

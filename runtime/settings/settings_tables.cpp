@@ -72,17 +72,78 @@ const Fields<MultiplexText>& multiplex_fields() {
   return fields;
 }
 
+const Fields<CanOpenWatchSettings>& canopen_fields() {
+  using S = CanOpenWatchSettings;
+  static const Fields<S> fields = {
+      {"heartbeat_timeout", &S::heartbeat_timeout_s, 0.01, 60, "s",
+       "a watched node not heard for so long is lost: its data is refused, odometry goes stale"},
+      {"sync_timeout", &S::sync_timeout_s, 0, 60, "s", "the same for SYNC; 0: it is not watched"},
+      {"sync_id", &S::sync_id, 1, 0x7FF, "", "CAN id of SYNC; 128 is 0x80"},
+  };
+  return fields;
+}
+
+const Fields<CanOpenNodeText>& canopen_node_fields() {
+  using S = CanOpenNodeText;
+  static const Fields<S> fields = {
+      {"node", &S::node, 1, 127, "", "node id"},
+      {"heartbeat", &S::heartbeat, 0, 0, "", "its heartbeat is watched; it must be operational"},
+      {"tpdo1", &S::tpdo1, 0, 0, "",
+       "objects mapped, as object 0x1A00 holds them: [0x60410010, 0x60640020]; makes the signals "
+       "NAME.6041 and NAME.6064 (NAME.2106sub1 of another sub-index)"},
+      {"tpdo2", &S::tpdo2, 0, 0, "", "the same of 0x1A01"},
+      {"tpdo3", &S::tpdo3, 0, 0, "", "the same of 0x1A02"},
+      {"tpdo4", &S::tpdo4, 0, 0, "", "the same of 0x1A03"},
+      {"tpdo1_id", &S::tpdo1_id, 0, 0x7FF, "", "CAN id; 0 is 0x180 + node"},
+      {"tpdo2_id", &S::tpdo2_id, 0, 0x7FF, "", "CAN id; 0 is 0x280 + node"},
+      {"tpdo3_id", &S::tpdo3_id, 0, 0x7FF, "", "CAN id; 0 is 0x380 + node"},
+      {"tpdo4_id", &S::tpdo4_id, 0, 0x7FF, "", "CAN id; 0 is 0x480 + node"},
+  };
+  return fields;
+}
+
+const Fields<WheelGeometry>& geometry_fields() {
+  using S = WheelGeometry;
+  static const Fields<S> fields = {
+      {"track", &S::track_m, 0.01, 20, "m", "between left and right contact points"},
+      {"slip_factor", &S::slip_factor, 0.5, 10, "",
+       "skid steering: a turn takes so much more of the wheels than the track tells"},
+      {"wheelbase", &S::wheelbase_m, 0.01, 20, "m", "ackermann, mecanum: front to rear axle"},
+      {"omni_radius", &S::omni_radius_m, 0.01, 10, "m", "omni: from the middle to each wheel"},
+      {"omni_bearing", &S::omni_bearing_rad, -7, 7, "rad",
+       "omni: of the first wheel seen from the middle; 0 is ahead"},
+  };
+  return fields;
+}
+
 const Fields<OdometrySettings>& odometry_fields() {
   using S = OdometrySettings;
   static const Fields<S> fields = {
       {"unit", &S::unit, 0, 0, "", "of wheel signals (per second, for speeds)"},
-      {"wheel_radius", &S::wheel_radius_m, 0.001, 10, "m", "for radians and turns"},
-      {"scale", &S::scale, 0.5, 2, "", "true over reported distance, from a calibration run"},
+      {"wheel_radius", &S::wheel_radius_m, 0.001, 10, "m", "for all units but metres"},
+      {"gear", &S::gear, 0.0001, 100000, "",
+       "turns of the motor, which the signals tell, for one of the wheel"},
+      {"pole_pairs", &S::pole_pairs, 1, 1000, "", "of the motor, for erpm"},
+      {"ticks_per_turn", &S::ticks_per_turn, 0, 1e12, "", "of the encoder, for ticks"},
+      {"scale", &S::scale, 0.5, 2, "",
+       "true over reported distance; zoned calibrate estimates it, scale_left, scale_right, track"},
+      {"scale_left", &S::scale_left, 0.5, 2, "", "the same for the wheels of the left side alone"},
+      {"scale_right", &S::scale_right, 0.5, 2, "", "and of the right"},
+      {"invert", &S::invert, 0, 0, "",
+       "keys of signals that count the other way round: [right]; of omni wheels [\"1\", \"3\"]"},
       {"left", &S::left, 0, 0, "",
        "signal of the left wheel: a name of can.signals, or MESSAGE.SIGNAL of can.dbc"},
       {"right", &S::right, 0, 0, "", "signal of the right wheel"},
-      {"forward", &S::forward, 0, 0, "", "twist: signal of the forward speed, m/s"},
+      {"forward", &S::forward, 0, 0, "",
+       "twist: signal of the forward speed, m/s; ackermann: of the driven axle, in unit"},
       {"yaw_rate", &S::yaw_rate, 0, 0, "", "twist: signal of the yaw rate, rad/s"},
+      {"steering", &S::steering, 0, 0, "", "ackermann: signal of the angle, rad, left is positive"},
+      {"front_left", &S::front_left, 0, 0, "", "mecanum: signal of that wheel"},
+      {"front_right", &S::front_right, 0, 0, "", "the same"},
+      {"rear_left", &S::rear_left, 0, 0, "", "the same"},
+      {"rear_right", &S::rear_right, 0, 0, "", "the same"},
+      {"around", &S::around, 0, 0, "",
+       "omni: signals of 3 or 4 wheels evenly around the middle, counter-clockwise"},
   };
   return fields;
 }
@@ -91,7 +152,8 @@ const Fields<WheelOdometrySettings>& wheel_fields() {
   using S = WheelOdometrySettings;
   static const Fields<S> fields = {
       {"model", &S::model, 0, 0, "", "what the signals tell"},
-      {"track", &S::track_m, 0.01, 20, "m", "between the wheels' contact points"},
+      {"steering_offset", &S::steering_offset_rad, -3, 3, "rad",
+       "ackermann: added to the steering"},
       {"max_speed", &S::max_speed_m_s, 0.01, 100, "m/s", "more is refused"},
       {"max_yaw_rate", &S::max_yaw_rate_rad_s, 0.01, 100, "rad/s", "more is refused"},
       {"max_acceleration", &S::max_acceleration_m_s2, 0.1, 1000, "m/s2",

@@ -64,13 +64,20 @@ void Preload::restart() noexcept {
   count_ = 0;
   moved_ = false;
   speed_m_s_ = 0;
+  sideways_m_s_ = 0;
   yaw_rate_rad_s_ = 0;
+}
+
+double Preload::speed() const noexcept {
+  if (sideways_m_s_ == 0) return std::abs(speed_m_s_);
+  return std::sqrt(speed_m_s_ * speed_m_s_ + sideways_m_s_ * sideways_m_s_);
 }
 
 void Preload::smooth(const PoseEstimate& pose) noexcept {
   const double dt_s = static_cast<double>(pose.t_ns - last_ns_) * kNanosecond_s;
   const double weight = moved_ ? dt_s / (settings_.motion_average_s + dt_s) : 1.0;
   speed_m_s_ += weight * (pose.speed_m_s - speed_m_s_);
+  sideways_m_s_ += weight * (pose.sideways_m_s - sideways_m_s_);
   yaw_rate_rad_s_ += weight * (pose.yaw_rate_rad_s - yaw_rate_rad_s_);
   last_ns_ = pose.t_ns;
   moved_ = true;
@@ -84,7 +91,7 @@ void Preload::update(const PoseEstimate& pose, ZoneId zone) noexcept {
   for (const Exit& exit : graph_.exits(zone)) {
     if (distance_m(exit.segment, point) <= three_sigma_m) see({exit.to, false, 0, pose.t_ns});
   }
-  const bool standing = std::abs(speed_m_s_) < settings_.standing_m_s;
+  const bool standing = speed() < settings_.standing_m_s;
   if (!standing) follow_path(pose, zone, three_sigma_m + settings_.margin_m);
 
   const auto hold_ns = static_cast<std::int64_t>(settings_.hold_s * 1e9);
@@ -107,7 +114,7 @@ const Exit* Preload::exit_on(ZoneId zone, Point2 from, Point2 to, double slack_m
 }
 
 void Preload::follow_path(const PoseEstimate& pose, ZoneId zone, double margin_m) noexcept {
-  const double speed = std::abs(speed_m_s_);
+  const double speed = this->speed();
   const double reach_m =
       std::min(settings_.most_reach_m, speed * static_cast<double>(longest_load_s_) + margin_m);
   const double step_m = std::max(kLeastStep_m, reach_m / kMaxSteps);
@@ -115,7 +122,11 @@ void Preload::follow_path(const PoseEstimate& pose, ZoneId zone, double margin_m
   const double slack_m = margin_m - settings_.margin_m + kPortalSlack_m;
 
   Point2 direction = unit(pose.T_map_base.yaw_rad);
-  if (speed_m_s_ < 0) direction = {-direction.x_m, -direction.y_m};
+  if (sideways_m_s_ != 0) {
+    direction = turned(direction, {speed_m_s_ / speed, sideways_m_s_ / speed});
+  } else if (speed_m_s_ < 0) {
+    direction = {-direction.x_m, -direction.y_m};
+  }
   Point2 at = moved({pose.T_map_base.x_m, pose.T_map_base.y_m}, direction, -kPortalSlack_m);
   // Chords of an arc point half a step's turn ahead of its start.
   direction = turned(direction, unit(turn_rad / 2));

@@ -33,10 +33,10 @@ struct PreloadSettings {
 //
 //   time to load the zone + (3 sigma + margin_m) / speed,
 //
-// where the path is the arc of the present speed and yaw rate, forwards or backwards; and those
-// whose portal is within three sigma, where the robot may be on the other side already. So a door
-// that is merely passed is not approached. While the robot stands or turns in place nothing new is
-// approached and nothing given up.
+// where the path is the arc of the present speed and yaw rate, in whichever direction the robot
+// goes; and those whose portal is within three sigma, where the robot may be on the other side
+// already. So a door that is merely passed is not approached. While the robot stands or turns in
+// place nothing new is approached and nothing given up.
 //
 // Real-time: no allocation; a cycle tests at most kMaxSteps + kMaxHops pieces of path against the
 // portals of one zone each (at most kMaxPortalsPerZone).   Threads: owned by the control thread.
@@ -62,6 +62,7 @@ class Preload {
 
  private:
   void smooth(const PoseEstimate& pose) noexcept;
+  double speed() const noexcept;
   void follow_path(const PoseEstimate& pose, ZoneId zone, double margin_m) noexcept;
   const Exit* exit_on(ZoneId zone, Point2 from, Point2 to, double slack_m) const noexcept;
   void see(const Approach& seen) noexcept;
@@ -71,6 +72,7 @@ class Preload {
   float longest_load_s_ = 0;
   PreloadSettings settings_;
   double speed_m_s_ = 0;
+  double sideways_m_s_ = 0;
   double yaw_rate_rad_s_ = 0;
   std::int64_t last_ns_ = 0;
   bool moved_ = false;

@@ -58,10 +58,10 @@ inline CycleConfig sample_robot() {
   signal.bits = {7, 32, ByteOrder::kBig};
   signal.type = SignalType::kSigned;
   signal.factor = 0.001;
-  config.odometry.left = signal;
+  config.odometry.signals[0] = signal;
   signal.bits.start = 39;
-  config.odometry.right = signal;
-  config.odometry.track_m = 0.413;
+  config.odometry.signals[1] = signal;
+  config.odometry.geometry.track_m = 0.413;
   return config;
 }
 

@@ -25,9 +25,9 @@ CanSignal big(std::uint32_t id, std::uint16_t start, std::uint16_t length) {
 
 WheelOdometrySettings agilex() {
   WheelOdometrySettings settings;
-  settings.left = big(0x311, 7, 32);
-  settings.right = big(0x311, 39, 32);
-  settings.track_m = 0.4;
+  settings.signals[0] = big(0x311, 7, 32);
+  settings.signals[1] = big(0x311, 39, 32);
+  settings.geometry.track_m = 0.4;
   return settings;
 }
 
@@ -204,7 +204,7 @@ TEST(WheelOdometry, GoesOnWhenTheClockWasSetBack) {
 
 TEST(WheelOdometry, WheelsInFramesOfTheirOwnArePaired) {
   WheelOdometrySettings settings = agilex();
-  settings.right = big(0x312, 7, 32);
+  settings.signals[1] = big(0x312, 7, 32);
   WheelOdometry odometry(settings);
   const auto one = [](std::uint32_t id, std::int64_t t_ms, std::int64_t mm) {
     CanFrame frame;
@@ -229,7 +229,7 @@ TEST(WheelOdometry, WheelsInFramesOfTheirOwnArePaired) {
 TEST(WheelOdometry, WheelSpeedsAndTwistsAreIntegrated) {
   WheelOdometrySettings speeds = agilex();
   speeds.model = OdometryModel::kWheelSpeeds;
-  speeds.metres_per_unit = 0.14;  // rad/s of a wheel of that radius
+  speeds.metres_per_unit = {0.14, 0.14};  // rad/s of a wheel of that radius
   WheelOdometry wheels(speeds);
   wheels.take(positions(0, 5000, 5000));
   const auto rolled = wheels.take(positions(20, 5000, 6000));
@@ -239,8 +239,8 @@ TEST(WheelOdometry, WheelSpeedsAndTwistsAreIntegrated) {
 
   WheelOdometrySettings twist = agilex();
   twist.model = OdometryModel::kTwist;
-  twist.left = big(0x221, 7, 16);
-  twist.right = big(0x221, 23, 16);
+  twist.signals[0] = big(0x221, 7, 16);
+  twist.signals[1] = big(0x221, 23, 16);
   WheelOdometry turned(twist);
   const auto frame = [](std::int64_t t_ms, int speed, int rate) {
     CanFrame made;

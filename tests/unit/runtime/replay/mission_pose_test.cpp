@@ -42,8 +42,8 @@ Outcome drive(const Alter& alter, bool start_at_truth = false,
   Settings settings = load_settings(ZONEPACK_SOURCE_DIR "/config/agilex.yaml").settings;
   if (model == OdometryModel::kTwist) {
     settings.odometry.wheels.model = model;
-    settings.odometry.wheels.left = settings.can.signals.at("linear_velocity");
-    settings.odometry.wheels.right = settings.can.signals.at("turn_rate");
+    settings.odometry.wheels.signals[0] = settings.can.signals.at("linear_velocity");
+    settings.odometry.wheels.signals[1] = settings.can.signals.at("turn_rate");
   }
   std::string fault;
   const auto fixes = read_corrections(kFolder + "corrections.txt", fault);

@@ -31,8 +31,8 @@ TEST(DbcSettings, SignalsOfADbcFileAreThoseWrittenOut) {
   const LoadedSettings named = with_dbc("  timeout: 0.3\n");
   EXPECT_THAT(named.faults, IsEmpty());
   const Settings written = load_settings(kConfig + "agilex.yaml").settings;
-  EXPECT_EQ(named.settings.odometry.wheels.left, written.odometry.wheels.left);
-  EXPECT_EQ(named.settings.odometry.wheels.right, written.odometry.wheels.right);
+  EXPECT_EQ(named.settings.odometry.wheels.signals[0], written.odometry.wheels.signals[0]);
+  EXPECT_EQ(named.settings.odometry.wheels.signals[1], written.odometry.wheels.signals[1]);
   EXPECT_EQ(named.settings.can.dbc, kConfig + "agilex.dbc");
   EXPECT_EQ(named.settings.can.signals.count("Odometry.LeftWheel"), 1u);
 }
@@ -89,8 +89,8 @@ TEST(DbcSettings, WrittenSignalsComeBeforeThoseOfTheFile) {
       "odometry: {left: Odometry.LeftWheel, right: Odometry.RightWheel}\n",
       kConfig + "robot.yaml");
   EXPECT_THAT(both.faults, IsEmpty());
-  EXPECT_EQ(both.settings.odometry.wheels.left.id, 5u);
-  EXPECT_EQ(both.settings.odometry.wheels.right.id, 0x311u);
+  EXPECT_EQ(both.settings.odometry.wheels.signals[0].id, 5u);
+  EXPECT_EQ(both.settings.odometry.wheels.signals[1].id, 0x311u);
 }
 
 }  // namespace

@@ -40,12 +40,12 @@ TEST(Settings, TheExampleNeedsNoEdit) {
   const LoadedSettings loaded = load_settings(kExample);
   EXPECT_THAT(loaded.faults, IsEmpty());
   const WheelOdometrySettings& wheels = loaded.settings.odometry.wheels;
-  EXPECT_EQ(wheels.left.id, 0x311u);
-  EXPECT_EQ(wheels.left.bits, (SignalBits{7, 32, ByteOrder::kBig}));
-  EXPECT_EQ(wheels.right.bits, (SignalBits{39, 32, ByteOrder::kBig}));
-  EXPECT_EQ(wheels.left.type, SignalType::kSigned);
-  EXPECT_EQ(wheels.left.factor, 0.001);
-  EXPECT_EQ(wheels.metres_per_unit, 1);
+  EXPECT_EQ(wheels.signals[0].id, 0x311u);
+  EXPECT_EQ(wheels.signals[0].bits, (SignalBits{7, 32, ByteOrder::kBig}));
+  EXPECT_EQ(wheels.signals[1].bits, (SignalBits{39, 32, ByteOrder::kBig}));
+  EXPECT_EQ(wheels.signals[0].type, SignalType::kSigned);
+  EXPECT_EQ(wheels.signals[0].factor, 0.001);
+  EXPECT_EQ(wheels.metres_per_unit[0], 1);
   EXPECT_EQ(loaded.settings.can.interface, "can0");
   EXPECT_EQ(loaded.settings.can.signals.size(), 4u);
   EXPECT_EQ(loaded.settings.map.path, "");
@@ -80,6 +80,7 @@ TEST(Settings, TheExampleShowsEveryKeyWithItsDefault) {
   EXPECT_EQ(loaded.memory.max_signatures, 0u);
   expect_defaults("loading", loading_fields(), loaded.loading);
   expect_defaults("odometry", wheel_fields(), loaded.odometry.wheels);
+  expect_defaults("odometry", geometry_fields(), loaded.odometry.wheels.geometry);
   EXPECT_EQ(loaded.odometry.wheel_radius_m, OdometrySettings{}.wheel_radius_m);
   expect_defaults("pose", pose_fields(), loaded.pose);
   expect_defaults("zones", zones_fields(), loaded.zones);
@@ -178,12 +179,13 @@ TEST(Settings, ReadsSizesPayloadsPinsAndModels) {
               ElementsAre("L1", "H1"));
   const LoadedSettings twist = changed("model: differential-positions", "model: twist");
   EXPECT_THAT(twist.faults, IsEmpty());
-  EXPECT_EQ(twist.settings.odometry.wheels.left.id, 0x221u);
-  EXPECT_EQ(twist.settings.odometry.wheels.right.bits.start, 23);
+  EXPECT_EQ(twist.settings.odometry.wheels.signals[0].id, 0x221u);
+  EXPECT_EQ(twist.settings.odometry.wheels.signals[1].bits.start, 23);
   // One turn of a wheel of radius 0.14 m: 2 pi 0.14 m.
-  EXPECT_DOUBLE_EQ(changed("unit: metres", "unit: turns").settings.odometry.wheels.metres_per_unit,
-                   2 * 3.14159265358979323846 * 0.14);
-  EXPECT_EQ(changed("unit: metres", "unit: radians").settings.odometry.wheels.metres_per_unit,
+  EXPECT_DOUBLE_EQ(
+      changed("unit: metres", "unit: turns").settings.odometry.wheels.metres_per_unit[0],
+      2 * 3.14159265358979323846 * 0.14);
+  EXPECT_EQ(changed("unit: metres", "unit: radians").settings.odometry.wheels.metres_per_unit[0],
             0.14);
 }
 
