@@ -128,6 +128,7 @@ void RunMirror::on_commands(std::span<const Command> commands) {
         break;
       case Command::Kind::kLease:
       case Command::Kind::kRelease:
+      case Command::Kind::kMapFreed:
         break;
     }
   }
