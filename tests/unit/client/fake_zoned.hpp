@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "platform/local_socket.hpp"
+#include "platform/shared_memory.hpp"
+#include "runtime/serve/messages.hpp"
+
+namespace zonepack::test_support {
+
+// The other end of a client's socket, for one client: it hands over memory and answers by rote.
+class FakeZoned {
+ public:
+  FakeZoned(const std::string& path, const SharedMemory& memory);
+  ~FakeZoned();
+
+  // Zones 0 and 1 of map `serial` from now on; told to the client with its next answer.
+  void change_map(std::uint32_t serial, std::vector<std::string> names);
+  std::atomic<wire::Fault> fault{wire::Fault::None};  // the answer to everything from now on
+  std::atomic<std::int64_t> pose_stamp_ns{0};         // of the last pose in
+  std::atomic<std::uint32_t> released{0};
+
+ private:
+  void serve();
+  void answer(const LocalSocket& client, const wire::Request& request);
+
+  const SharedMemory& memory_;
+  LocalListener listener_;
+  std::atomic<bool> done_{false};
+  std::atomic<bool> tell_change_{false};
+  std::atomic<std::uint32_t> serial_{1};
+  std::vector<std::string> names_{"corridor", "lobby"};
+  std::thread thread_;
+};
+
+}  // namespace zonepack::test_support
