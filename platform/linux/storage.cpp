@@ -5,57 +5,228 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <utility>
 
+#include "platform/base/require.hpp"
+#include "platform/linux/mapped_copy.hpp"
+#include "platform/storage_probe.hpp"
+
 namespace zonepack {
+namespace {
 
-Result<StorageFile> StorageFile::open(const std::string& path) {
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
-  if (fd < 0) return {errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kIo, errno};
-  StorageFile file(fd, 0);
+// Enough for every block device; what asks for more refuses with EINVAL and is read buffered.
+constexpr std::uint64_t kDirectAlignment = 4096;
+constexpr std::uint64_t kSmallestPage = 4096;
+constexpr ByteCount kDropBytes = 1 * kMiB;
+constexpr std::size_t kPieceBytes = 1 * kMiB;
+
+std::atomic<StorageProbe*> probe_in_use = nullptr;
+
+constexpr std::uint64_t align_down(std::uint64_t value) {
+  return value / kDirectAlignment * kDirectAlignment;
+}
+constexpr std::uint64_t align_up(std::uint64_t value) {
+  return align_down(value + kDirectAlignment - 1);
+}
+
+// The part of a buffer between its first and last page boundary.
+template <typename Byte>
+std::span<Byte> aligned_part(std::span<Byte> buffer) {
+  const auto begin = reinterpret_cast<std::uintptr_t>(buffer.data());
+  const std::uint64_t skip = align_up(begin) - begin;
+  if (buffer.size() < skip) return {};
+  return buffer.subspan(skip, align_down(buffer.size() - skip));
+}
+
+// Reading at `at` gave nothing: the file ends there or before.
+Error truncated(int fd, std::uint64_t at) noexcept {
   struct stat status;
-  if (::fstat(fd, &status) != 0) return {ErrorCode::kIo, errno};
-  if (!S_ISREG(status.st_mode)) {
-    return {ErrorCode::kIo, S_ISDIR(status.st_mode) ? EISDIR : EINVAL};
-  }
-  file.size_ = static_cast<std::uint64_t>(status.st_size);
-  return file;
+  const bool known = ::fstat(fd, &status) == 0;
+  return {ErrorCode::kTruncated,
+          std::min(static_cast<std::int64_t>(at),
+                   known ? static_cast<std::int64_t>(status.st_size) : INT64_MAX)};
 }
 
-StorageFile::StorageFile(StorageFile&& other) noexcept
-    : fd_(std::exchange(other.fd_, -1)), size_(other.size_) {}
-
-StorageFile& StorageFile::operator=(StorageFile&& other) noexcept {
-  std::swap(fd_, other.fd_);
-  std::swap(size_, other.size_);
-  return *this;
-}
-
-StorageFile::~StorageFile() {
-  if (fd_ >= 0) ::close(fd_);
-}
-
-Result<void> StorageFile::read_at(std::uint64_t offset, std::span<std::byte> out) const noexcept {
+Result<void> read_all(int fd, std::uint64_t offset, std::span<std::byte> out) noexcept {
   while (!out.empty()) {
-    const ssize_t got = ::pread(fd_, out.data(), out.size(), static_cast<off_t>(offset));
+    const ssize_t got = ::pread(fd, out.data(), out.size(), static_cast<off_t>(offset));
     if (got < 0) {
       if (errno == EINTR) continue;
       return {ErrorCode::kIo, errno};
     }
-    if (got == 0) return {ErrorCode::kTruncated, static_cast<std::int64_t>(offset)};
+    if (got == 0) return truncated(fd, offset);
     out = out.subspan(static_cast<std::size_t>(got));
     offset += static_cast<std::uint64_t>(got);
   }
   return {};
 }
 
-Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t limit) {
-  Result<StorageFile> file = StorageFile::open(path);
+// Until the pages of a range are there, or cannot be read.
+void wait_for(int fd, std::uint64_t from, std::uint64_t to) noexcept {
+  for (std::uint64_t at = from; at < to; at += kSmallestPage) {
+    std::byte ignored;
+    if (::pread(fd, &ignored, 1, static_cast<off_t>(at)) != 1) return;
+  }
+}
+
+}  // namespace
+
+void set_storage_probe(StorageProbe* probe) noexcept { probe_in_use = probe; }
+
+Result<StorageFile> StorageFile::open(const std::string& path, ReadMode mode) {
+  StorageProbe::FileMark mark = 0;
+  if (StorageProbe* const probe = probe_in_use; probe != nullptr) {
+    const Result<StorageProbe::FileMark> marked = probe->on_open(path);
+    if (!marked) return marked.error();
+    mark = *marked;
+  }
+  constexpr int kFlags = O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK;
+  int fd = -1;
+  if (mode == ReadMode::kDirect) {
+    fd = ::open(path.c_str(), kFlags | O_DIRECT);
+    if (fd < 0 && errno == EINVAL) mode = ReadMode::kBuffered;
+  }
+  if (fd < 0) fd = ::open(path.c_str(), kFlags);
+  if (fd < 0) return {errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kIo, errno};
+  StorageFile file(fd, mode);
+  file.mark_ = mark;
+  struct stat status;
+  if (::fstat(fd, &status) != 0) return {ErrorCode::kIo, errno};
+  if (!S_ISREG(status.st_mode)) {
+    return {ErrorCode::kIo, S_ISDIR(status.st_mode) ? EISDIR : EINVAL};
+  }
+  file.size_ = static_cast<std::uint64_t>(status.st_size);
+  // No reading ahead beyond what read_ahead() asks for: on some machines it is 8 MiB.
+  if (mode != ReadMode::kCached) ::posix_fadvise(fd, 0, 0, POSIX_FADV_RANDOM);
+  return file;
+}
+
+StorageFile::StorageFile(StorageFile&& other) noexcept : StorageFile(-1, ReadMode::kCached) {
+  *this = std::move(other);
+}
+
+StorageFile& StorageFile::operator=(StorageFile&& other) noexcept {
+  std::swap(fd_, other.fd_);
+  std::swap(mode_, other.mode_);
+  std::swap(mark_, other.mark_);
+  std::swap(size_, other.size_);
+  std::swap(dropped_, other.dropped_);
+  std::swap(ahead_, other.ahead_);
+  std::swap(ahead_count_, other.ahead_count_);
+  return *this;
+}
+
+StorageFile::~StorageFile() {
+  if (fd_ < 0) return;
+  if (mode_ != ReadMode::kCached) {
+    for (std::size_t i = 0; i < ahead_count_; ++i) wait_for(fd_, ahead_[i].from, ahead_[i].to);
+    ::posix_fadvise(fd_, 0, 0, POSIX_FADV_DONTNEED);
+  }
+  ::close(fd_);
+}
+
+Result<void> StorageFile::probe(std::uint64_t offset, std::uint64_t size) const noexcept {
+  StorageProbe* const probe = mark_ == 0 ? nullptr : probe_in_use.load();
+  return probe == nullptr ? Result<void>() : probe->on_read(mark_, offset, size);
+}
+
+Result<void> StorageFile::read_at(std::uint64_t offset, std::span<std::byte> out) const noexcept {
+  if (mode_ == ReadMode::kDirect || mode_ == ReadMode::kMapped) return read_mapped(offset, out);
+  if (const Result<void> allowed = probe(offset, out.size()); !allowed) return allowed;
+  return read_all(fd_, offset, out);
+}
+
+Result<void> StorageFile::read_mapped(std::uint64_t offset,
+                                      std::span<std::byte> out) const noexcept {
+  if (const Result<void> allowed = probe(offset, out.size()); !allowed) return allowed;
+  return copy_mapped(fd_, offset, out);
+}
+
+std::size_t StorageFile::window_room(std::span<const std::byte> buffer) const noexcept {
+  if (mode_ != ReadMode::kDirect) return buffer.size();
+  const std::size_t aligned = aligned_part(buffer).size();
+  return aligned < kDirectAlignment ? 0 : aligned - (kDirectAlignment - 1);
+}
+
+Result<std::span<const std::byte>> StorageFile::read_window(std::uint64_t offset, std::size_t size,
+                                                            std::span<std::byte> buffer) noexcept {
+  ZP_REQUIRE(size <= window_room(buffer));
+  if (const Result<void> allowed = probe(offset, size); !allowed) return allowed.error();
+  if (mode_ == ReadMode::kDirect) return read_direct(offset, size, buffer);
+  const std::span<std::byte> out = buffer.first(size);
+  const Result<void> read =
+      mode_ == ReadMode::kMapped ? copy_mapped(fd_, offset, out) : read_all(fd_, offset, out);
+  if (!read) return read.error();
+  settle_ahead(offset + size);
+  drop_behind(offset + size);
+  return std::span<const std::byte>(out);
+}
+
+Result<std::span<const std::byte>> StorageFile::read_direct(std::uint64_t offset, std::size_t size,
+                                                            std::span<std::byte> buffer) noexcept {
+  const std::span<std::byte> room = aligned_part(buffer);
+  const std::uint64_t from = align_down(offset);
+  const std::uint64_t to = align_up(offset + size);  // may lie beyond the end of the file
+  std::uint64_t at = from;
+  while (at < offset + size) {
+    const ssize_t got = ::pread(fd_, room.data() + (at - from), to - at, static_cast<off_t>(at));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0 && errno == EINVAL) {  // allowed at open, refused now
+      if (::fcntl(fd_, F_SETFL, O_NONBLOCK) != 0) return {ErrorCode::kIo, errno};
+      mode_ = ReadMode::kBuffered;
+      const std::span<std::byte> out = buffer.first(size);
+      if (const auto read = read_all(fd_, offset, out); !read) return read.error();
+      return std::span<const std::byte>(out);
+    }
+    if (got < 0) return {ErrorCode::kIo, errno};
+    at += static_cast<std::uint64_t>(got);
+    // Only the end of a file gives a part of a block.
+    if (got == 0 || at % kDirectAlignment != 0) break;
+  }
+  if (at < offset + size) return truncated(fd_, at);
+  drop_behind(offset + size);  // some file systems serve direct reads from the cache
+  return std::span<const std::byte>(room.subspan(offset - from, size));
+}
+
+bool StorageFile::read_ahead(std::uint64_t offset, std::uint64_t size) noexcept {
+  if (ahead_count_ == ahead_.size()) return false;
+  ::posix_fadvise(fd_, static_cast<off_t>(offset), static_cast<off_t>(size), POSIX_FADV_WILLNEED);
+  ahead_[ahead_count_++] = {offset, offset + size};
+  return true;
+}
+
+// What was asked for before `end` has been read by now.
+void StorageFile::settle_ahead(std::uint64_t end) noexcept {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < ahead_count_; ++i) {
+    if (ahead_[i].to > end) ahead_[kept++] = {std::max(ahead_[i].from, end), ahead_[i].to};
+  }
+  ahead_count_ = kept;
+}
+
+// From offset 0 each time: dropping piece by piece leaves large folios behind that span pieces.
+void StorageFile::drop_behind(std::uint64_t end) noexcept {
+  if (mode_ == ReadMode::kCached || end < dropped_ + kDropBytes) return;
+  ::posix_fadvise(fd_, 0, static_cast<off_t>(end), POSIX_FADV_DONTNEED);
+  dropped_ = end;
+}
+
+Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t limit,
+                                         ReadMode mode) {
+  if (mode == ReadMode::kDirect) mode = ReadMode::kBuffered;  // into place, wherever that is
+  Result<StorageFile> file = StorageFile::open(path, mode);
   if (!file) return file.error();
   if (file->size() > limit) return {ErrorCode::kTooLarge, static_cast<std::int64_t>(file->size())};
   std::vector<std::byte> bytes(file->size());
-  if (const Result<void> read = file->read_at(0, bytes); !read) return read.error();
+  for (std::size_t at = 0; at < bytes.size();) {
+    const auto piece = std::span(bytes).subspan(at, std::min(bytes.size() - at, kPieceBytes));
+    const auto read = file->read_window(at, piece.size(), piece);
+    if (!read) return read.error();
+    at += piece.size();
+  }
   return bytes;
 }
 

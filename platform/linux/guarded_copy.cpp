@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "platform/guarded_copy.hpp"
+
+#include <setjmp.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+
+#include "platform/base/require.hpp"
+
+namespace zonepack {
+namespace {
+
+struct Guard {
+  sigjmp_buf back;
+  std::uintptr_t begin;  // whole pages
+  std::uintptr_t end;
+};
+
+// initial-exec: reading it in a handler must not allocate, even in a shared library.
+[[gnu::tls_model("initial-exec")]] thread_local Guard* volatile running = nullptr;
+
+struct sigaction before;
+
+void on_bus_error(int signal, siginfo_t* info, void* context) {
+  const bool sent = info->si_code <= 0;  // by kill(), not by a fault
+  const auto at = reinterpret_cast<std::uintptr_t>(info->si_addr);
+  if (Guard* const guard = running;
+      !sent && guard != nullptr && guard->begin <= at && at < guard->end) {
+    siglongjmp(guard->back, 1);
+  }
+  if ((before.sa_flags & SA_SIGINFO) != 0) return before.sa_sigaction(signal, info, context);
+  if (before.sa_handler != SIG_DFL && before.sa_handler != SIG_IGN) {
+    return before.sa_handler(signal);
+  }
+  if (sent && before.sa_handler == SIG_IGN) return;
+  struct sigaction standard = {};
+  standard.sa_handler = SIG_DFL;
+  ::sigaction(SIGBUS, &standard, nullptr);
+  if (sent) ::raise(SIGBUS);  // a fault comes again by itself
+}
+
+bool install() {
+  struct sigaction ours = {};
+  ours.sa_sigaction = on_bus_error;
+  // NODEFER: a jump out of the handler leaves the signal unblocked.
+  ours.sa_flags = SA_SIGINFO | SA_NODEFER | SA_ONSTACK;
+  sigemptyset(&ours.sa_mask);
+  return ::sigaction(SIGBUS, &ours, &before) == 0;
+}
+
+}  // namespace
+
+[[gnu::noinline]] bool guarded_copy(std::byte* to, const std::byte* from,
+                                    std::size_t size) noexcept {
+  static const bool installed = install();
+  ZP_REQUIRE(installed);
+  const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
+  Guard guard;
+  guard.begin = reinterpret_cast<std::uintptr_t>(from) / page * page;
+  guard.end = (reinterpret_cast<std::uintptr_t>(from) + size + page - 1) / page * page;
+  if (sigsetjmp(guard.back, 0) != 0) {
+    running = nullptr;
+    return false;
+  }
+  running = &guard;
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+  std::memcpy(to, from, size);
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+  running = nullptr;
+  return true;
+}
+
+}  // namespace zonepack

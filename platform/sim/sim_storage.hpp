@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "platform/storage_probe.hpp"
+
+namespace zonepack {
+
+// Makes files fail, stall and tell what is read of them, while it exists; one at a time. A file is
+// named by the end of its path.
+//
+// Threads: any. A read that is held blocks its thread as a dead disk would.
+class SimStorage final : public StorageProbe {
+ public:
+  struct Read {
+    std::string path;
+    std::uint64_t offset;
+    std::uint64_t size;
+  };
+
+  SimStorage();
+  ~SimStorage() override;
+  SimStorage(const SimStorage&) = delete;
+  SimStorage& operator=(const SimStorage&) = delete;
+
+  // Opening fails with this error.
+  void fail_open(const std::string& file, Error error);
+  // Reads that touch bytes at or behind `from` fail with this error.
+  void fail_reads(const std::string& file, std::uint64_t from, Error error);
+  // Reads wait until release().
+  void hold_reads(const std::string& file);
+  void release();
+  // No faults any more; releases.
+  void heal();
+
+  // Whether a read is being held just now.
+  bool holding() const;
+  // All reads of files opened since this exists, failed ones included.
+  std::vector<Read> reads() const;
+
+  Result<FileMark> on_open(const std::string& path) noexcept override;
+  Result<void> on_read(FileMark file, std::uint64_t offset, std::uint64_t size) noexcept override;
+
+ private:
+  struct Fault {
+    std::string file;
+    bool open = false;
+    bool hold = false;
+    std::uint64_t from = 0;
+    Error error;
+  };
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Fault> faults_;
+  std::vector<std::string> opened_;  // by FileMark - 1
+  std::vector<Read> reads_;
+  std::uint32_t held_ = 0;
+};
+
+}  // namespace zonepack

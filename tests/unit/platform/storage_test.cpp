@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "platform/storage.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+
+#include "tests/support/numbered_file.hpp"
+#include "tests/support/page_cache.hpp"
+
+namespace zonepack {
+namespace {
+
+using test_support::are_numbers;
+using test_support::cached_bytes;
+using test_support::make_cold;
+using test_support::NumberedFile;
+
+constexpr std::size_t kBufferBytes = 64 * 1024;
+
+class Storage : public testing::TestWithParam<ReadMode> {
+ protected:
+  static StorageFile open(const NumberedFile& file) {
+    return StorageFile::open(file.path().string(), GetParam()).value();
+  }
+
+  alignas(4096) std::byte buffer_[kBufferBytes + 4096];
+  std::span<std::byte> aligned_{buffer_, kBufferBytes};
+};
+
+TEST_P(Storage, BringsTheSameBytesWhereverAWindowStartsAndTheBufferStands) {
+  const NumberedFile file(300'001);
+  StorageFile opened = open(file);
+  EXPECT_EQ(opened.size(), 300'001u);
+  for (const std::size_t shift : {0u, 1u, 16u, 4095u}) {
+    const std::span<std::byte> buffer = std::span(buffer_).subspan(shift, kBufferBytes);
+    const std::size_t room = opened.window_room(buffer);
+    // 16 pages; less at most a page because of where the buffer stands, and one because of where
+    // the window does.
+    ASSERT_GE(room, kBufferBytes - 8192);
+    for (const std::uint64_t offset : {0ul, 1ul, 511ul, 512ul, 4095ul, 4096ul, 200'000ul}) {
+      const auto window = opened.read_window(offset, room, buffer);
+      ASSERT_TRUE(window) << offset;
+      EXPECT_EQ(window->size(), room);
+      EXPECT_TRUE(are_numbers(*window, offset)) << offset;
+    }
+    const auto last = opened.read_window(300'000, 1, buffer);
+    ASSERT_TRUE(last);
+    EXPECT_TRUE(are_numbers(*last, 300'000));
+  }
+}
+
+TEST_P(Storage, FillsAnySpanFromAnyOffset) {
+  const NumberedFile file(3'000'001);  // over two mapped windows
+  const StorageFile opened = open(file);
+  std::vector<std::byte> out(2'999'000);
+  ASSERT_TRUE(opened.read_at(1001, out));
+  EXPECT_TRUE(are_numbers(out, 1001));
+  std::ranges::fill(out, std::byte{});
+  ASSERT_TRUE(opened.read_mapped(999, out));
+  EXPECT_TRUE(are_numbers(out, 999));
+  const auto whole = read_file(file.path().string(), 3'000'001, GetParam());
+  ASSERT_TRUE(whole);
+  EXPECT_TRUE(are_numbers(*whole, 0));
+  EXPECT_EQ(read_file(file.path().string(), 3'000'000, GetParam()).error(),
+            (Error{ErrorCode::kTooLarge, 3'000'001}));
+}
+
+TEST_P(Storage, AFileCutShortAfterItWasOpenedEndsWhereItEndsNow) {
+  NumberedFile file(100'000);
+  StorageFile opened = open(file);
+  for (const std::uint64_t size : {70'000ul, 65'536ul, 4096ul, 100ul, 0ul}) {
+    file.cut_to(size);
+    const Error cut{ErrorCode::kTruncated, static_cast<std::int64_t>(size)};
+    const auto window = opened.read_window(0, 50'000, aligned_);
+    if (size < 50'000) {
+      EXPECT_EQ(window.error(), cut);
+    } else {
+      ASSERT_TRUE(window);
+      EXPECT_TRUE(are_numbers(*window, 0));
+    }
+    std::vector<std::byte> out(100'000);
+    EXPECT_EQ(opened.read_at(0, out).error(), cut);
+    EXPECT_EQ(opened.read_mapped(0, out).error(), cut);
+  }
+}
+
+TEST_P(Storage, LeavesLittleInThePageCacheAtAnyTime) {
+  constexpr std::uint64_t kBytes = 12 * kMiB;
+  const NumberedFile file(kBytes);
+  if (!make_cold(file.path())) GTEST_SKIP() << "a file system in memory: nothing can be dropped";
+  std::uint64_t most = 0;
+  {
+    StorageFile opened = open(file);
+    const std::size_t room = opened.window_room(aligned_);
+    for (std::uint64_t at = 0; at < kBytes; at += room) {
+      if (opened.mode() != ReadMode::kCached) opened.read_ahead(at, StorageFile::kMostAhead);
+      const std::size_t size = std::min<std::uint64_t>(room, kBytes - at);
+      ASSERT_TRUE(opened.read_window(at, size, aligned_));
+      most = std::max(most, cached_bytes(file.path()));
+    }
+  }
+  if (GetParam() == ReadMode::kCached) {
+    EXPECT_EQ(cached_bytes(file.path()), kBytes);  // what the others are measured against
+  } else {
+    EXPECT_LE(most, StorageFile::kMostPageCache);
+    EXPECT_EQ(cached_bytes(file.path()), 0u);
+  }
+}
+
+TEST_P(Storage, ClosedInTheMidstOfReadingAheadItLeavesNothing) {
+  const NumberedFile file(4 * kMiB);
+  if (!make_cold(file.path())) GTEST_SKIP() << "a file system in memory: nothing can be dropped";
+  if (GetParam() == ReadMode::kCached) return;
+  for (int round = 0; round < 20; ++round) {
+    StorageFile opened = open(file);
+    opened.read_ahead(0, StorageFile::kMostAhead);
+    ASSERT_TRUE(opened.read_window(0, 4096, aligned_));
+  }
+  EXPECT_EQ(cached_bytes(file.path()), 0u);
+}
+
+TEST_P(Storage, OpensRegularFilesOnly) {
+  const test_support::TemporaryFolder folder;
+  const auto why = [&](const std::string& path) {
+    return StorageFile::open(path, GetParam()).error();
+  };
+  EXPECT_EQ(why((folder / "none").string()), (Error{ErrorCode::kNotFound, ENOENT}));
+  EXPECT_EQ(why(folder.path().string()).code, ErrorCode::kIo);
+  const std::string pipe = (folder / "pipe").string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(why(pipe).code, ErrorCode::kIo);  // and does not wait for a writer
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, Storage,
+                         testing::Values(ReadMode::kDirect, ReadMode::kMapped, ReadMode::kBuffered,
+                                         ReadMode::kCached));
+
+TEST(StorageFile, ReadsThroughTheCacheWhereDirectReadsAreRefused) {
+  // The kernel's own files know no direct reads.
+  const std::string path = "/sys/kernel/notes";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
+  auto opened = StorageFile::open(path, ReadMode::kDirect);
+  ASSERT_TRUE(opened);
+  EXPECT_EQ(opened->mode(), ReadMode::kBuffered);
+  std::byte buffer[64];
+  const auto window = opened->read_window(4, 8, buffer);
+  ASSERT_TRUE(window);
+  std::byte other[8];
+  ASSERT_TRUE(StorageFile::open(path)->read_at(4, other));
+  EXPECT_TRUE(std::ranges::equal(*window, other));
+}
+
+}  // namespace
+}  // namespace zonepack
