@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/map/loader.hpp"
 
+#include <algorithm>
+
 namespace zonepack {
 
-Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone) {
+Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, ReadMode mode) {
   const CatalogZone& wanted = catalog.zones[zone];
   Result<PackReader> pack =
-      PackReader::open(catalog.folder + "/" + wanted.pack, &wanted.pack_digest);
+      PackReader::open(catalog.folder + "/" + wanted.pack, &wanted.pack_digest, mode);
   if (!pack) return pack.error();
   const fb::PackIndex& index = pack->index();
   if (index.zone()->str() != wanted.name || index.signatures() != wanted.signatures ||
@@ -18,8 +20,8 @@ Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone) {
 
 Result<ZoneLoad> ZoneLoad::begin(const Catalog& catalog, ZoneId zone,
                                  std::span<std::byte* const> slots,
-                                 std::span<std::byte> read_buffer) {
-  Result<PackReader> pack = open_pack(catalog, zone);
+                                 std::span<std::byte> read_buffer, ReadMode mode) {
+  Result<PackReader> pack = open_pack(catalog, zone, mode);
   if (!pack) return pack.error();
   if (slots.size() < catalog.zones[zone].slots) {
     return {ErrorCode::kNoRoom, catalog.zones[zone].slots};
@@ -28,30 +30,63 @@ Result<ZoneLoad> ZoneLoad::begin(const Catalog& catalog, ZoneId zone,
   return ZoneLoad(std::move(*pack), mask, slots, read_buffer);
 }
 
-// Reads a raw chunk into its place. Before others, reads ahead as many wanted chunks as follow each
-// other, are compressed and fit the buffer.
-Result<ByteSpan> ZoneLoad::stored(const fb::ChunkEntry& entry, std::byte* place) {
-  if (entry.codec() == fb::ChunkCodec::Raw) {
-    const std::span<std::byte> out(place, entry.stored_size());
-    if (const auto read = pack_.file().read_at(entry.offset(), out); !read) return read.error();
-    return ByteSpan(out);
-  }
-  const std::uint64_t end = entry.offset() + entry.stored_size();
-  if (entry.offset() < buffered_from_ || end > buffered_to_) {
-    std::uint64_t to = end;
-    const auto& all = *pack_.index().chunks();
-    for (std::uint32_t i = next_ + 1; i < all.size() && wanted(*all.Get(i)); ++i) {
-      if (all.Get(i)->codec() == fb::ChunkCodec::Raw) break;
-      const std::uint64_t more = to + all.Get(i)->stored_size();
-      if (more - entry.offset() > buffer_.size()) break;
-      to = more;
+// Asks for wanted chunks some way ahead of the window, so that the disk works while we decode.
+void ZoneLoad::ask_ahead() {
+  StorageFile& file = pack_.file();
+  if (file.mode() != ReadMode::kMapped && file.mode() != ReadMode::kBuffered) return;
+  constexpr ByteCount kMost = StorageFile::kMostAhead;
+  if (ahead_ < next_) ahead_ = next_;
+  if (ahead_bytes_ >= kMost / 2) return;
+  const auto& all = *pack_.index().chunks();
+  while (ahead_ < all.size() && ahead_bytes_ < kMost) {
+    std::uint32_t end = ahead_;
+    ByteCount run = 0;
+    for (; end < all.size() && wanted(*all.Get(end)) && ahead_bytes_ + run < kMost; ++end) {
+      run += all.Get(end)->stored_size();
     }
-    const auto out = buffer_.first(to - entry.offset());
-    if (const auto read = pack_.file().read_at(entry.offset(), out); !read) return read.error();
-    buffered_from_ = entry.offset();
-    buffered_to_ = to;
+    if (run > 0 && !file.read_ahead(all.Get(ahead_)->offset(), run)) return;
+    ahead_bytes_ += run;
+    ahead_ = run > 0 ? end : ahead_ + 1;
   }
-  return ByteSpan(buffer_.subspan(entry.offset() - buffered_from_, entry.stored_size()));
+}
+
+// Brings [from, from + size) into `buffer`.
+Result<ByteSpan> ZoneLoad::fetch(std::uint64_t from, std::size_t size,
+                                 std::span<std::byte> buffer) {
+  ask_ahead();
+  const Result<ByteSpan> window = pack_.file().read_window(from, size, buffer);
+  if (!window) return window;
+  fetched_ += size;
+  ahead_bytes_ -= std::min<ByteCount>(ahead_bytes_, size);
+  return window;
+}
+
+// The stored bytes of the next chunk: in the buffer, with those of the wanted ones that follow it
+// in the file and fit; or, a raw chunk that may start anywhere, in its place.
+Result<ByteSpan> ZoneLoad::stored(const fb::ChunkEntry& entry, std::byte* place) {
+  const std::uint64_t from = entry.offset();
+  const std::uint64_t end = from + entry.stored_size();
+  if (window_from_ <= from && end <= window_from_ + window_.size()) {
+    return window_.subspan(from - window_from_, entry.stored_size());
+  }
+  const bool anywhere = pack_.file().mode() != ReadMode::kDirect;
+  const auto in_place = [&](const fb::ChunkEntry& chunk) {
+    return anywhere && chunk.codec() == fb::ChunkCodec::Raw;
+  };
+  if (in_place(entry)) return fetch(from, entry.stored_size(), {place, entry.stored_size()});
+  const std::size_t room = pack_.file().window_room(buffer_);
+  const auto& all = *pack_.index().chunks();
+  std::uint64_t to = end;
+  for (std::uint32_t i = next_ + 1; i < all.size(); ++i) {
+    const fb::ChunkEntry& more = *all.Get(i);
+    if (!wanted(more) || in_place(more) || to + more.stored_size() - from > room) break;
+    to += more.stored_size();
+  }
+  const Result<ByteSpan> window = fetch(from, to - from, buffer_);
+  if (!window) return window;
+  window_ = *window;
+  window_from_ = from;
+  return window_.first(entry.stored_size());
 }
 
 Result<bool> ZoneLoad::step() {

@@ -14,25 +14,29 @@ namespace zonepack {
 
 // Opens the pack of a zone. kMismatch when it is a whole pack, but not the one that the manifest
 // names, or holds another zone or number of signatures or slots.
-Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone);
+Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone,
+                             ReadMode mode = ReadMode::kCached);
 
 // Loads one zone, chunk by chunk, from its pack into slots: read into a private buffer, check,
-// decode into place. Between two step() calls the load can be given up.
+// decode into place. Between two step() calls the load can be given up. One step waits for at most
+// one window of at most kReadBufferBytes, holding the next chunk and those behind it that fit.
 //
 // Threads: the loader's. Memory: the index and one read buffer, both counted in
 // Catalog::fixed_bytes.
 class ZoneLoad {
  public:
   // `slots` are the zone's, in placement order, kSlotBytes each; catalog.zones[zone].slots of them.
-  // `read_buffer` has kReadBufferBytes.
+  // `read_buffer` has kReadBufferBytes; starting on a page it serves direct reads best.
   static Result<ZoneLoad> begin(const Catalog& catalog, ZoneId zone,
-                                std::span<std::byte* const> slots,
-                                std::span<std::byte> read_buffer);
+                                std::span<std::byte* const> slots, std::span<std::byte> read_buffer,
+                                ReadMode mode = kDefaultReadMode);
 
   // Loads the next chunk; false when there was none left. After an error the load is over.
   Result<bool> step();
 
   ByteCount stored_bytes_read() const noexcept { return stored_bytes_; }
+  // Asked from storage so far: windows, header, index and tail.
+  ByteCount bytes_fetched() const noexcept { return fetched_; }
   // Where the chunks loaded so far stand.
   const std::vector<ChunkRef>& chunks() const noexcept { return chunks_; }
 
@@ -41,9 +45,12 @@ class ZoneLoad {
            std::span<std::byte> read_buffer)
       : pack_(std::move(pack)), mask_(mask), slots_(slots), buffer_(read_buffer) {
     chunks_.reserve(pack_.index().chunks()->size());
+    fetched_ = sizeof(PackHeader) + pack_.tail().index_size + sizeof(PackTail);
   }
 
   Result<ByteSpan> stored(const fb::ChunkEntry& entry, std::byte* place);
+  Result<ByteSpan> fetch(std::uint64_t from, std::size_t size, std::span<std::byte> buffer);
+  void ask_ahead();
   bool wanted(const fb::ChunkEntry& entry) const noexcept {
     return (mask_ & mask_of(entry.kind())) != 0;
   }
@@ -52,11 +59,14 @@ class ZoneLoad {
   PayloadMask mask_;
   std::span<std::byte* const> slots_;
   std::span<std::byte> buffer_;
-  std::uint64_t buffered_from_ = 0;  // file offsets [from, to) stand in the buffer
-  std::uint64_t buffered_to_ = 0;
+  ByteSpan window_;  // in the buffer: the file's bytes from window_from_ on
+  std::uint64_t window_from_ = 0;
   std::uint32_t next_ = 0;
+  std::uint32_t ahead_ = 0;    // wanted chunks before this one were asked for in advance ...
+  ByteCount ahead_bytes_ = 0;  // ... and so many bytes of them were not yet read
   Placement placement_;
   ByteCount stored_bytes_ = 0;
+  ByteCount fetched_ = 0;
   std::vector<ChunkRef> chunks_;
 };
 

@@ -13,15 +13,18 @@
 
 namespace zonepack {
 
-// An open pack with its index read and checked.
+// An open pack with its index read and checked. Header, index and tail come through mapped windows,
+// chunks in the mode that the file was opened for.
 class PackReader {
  public:
   // With `expected`, kMismatch for a whole pack that is another than the one asked for.
-  static Result<PackReader> open(const std::string& path, const Digest32* expected = nullptr);
+  static Result<PackReader> open(const std::string& path, const Digest32* expected = nullptr,
+                                 ReadMode mode = ReadMode::kCached);
 
   const fb::PackIndex& index() const noexcept { return *index_; }
   const PackTail& tail() const noexcept { return tail_; }
   const StorageFile& file() const noexcept { return file_; }
+  StorageFile& file() noexcept { return file_; }
 
  private:
   PackReader(StorageFile file, const PackTail& tail)

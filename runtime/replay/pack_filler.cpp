@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/replay/pack_filler.hpp"
 
+#include "runtime/map/load_fault.hpp"
 #include "runtime/map/loader.hpp"
 
 namespace zonepack {
@@ -22,7 +23,7 @@ Result<void> PackFiller::fill(ZoneId zone, std::span<const SlotIndex> slots) {
 }
 
 Result<void> PackFiller::load(ZoneId zone) {
-  Result<ZoneLoad> load = ZoneLoad::begin(catalog_, zone, places_, read_buffer_);
+  Result<ZoneLoad> load = ZoneLoad::begin(catalog_, zone, places_, read_buffer_, ReadMode::kCached);
   if (!load) return load.error();
   for (;;) {
     const Result<bool> more = load->step();
@@ -34,11 +35,7 @@ Result<void> PackFiller::load(ZoneId zone) {
 void PackFiller::note(ZoneId zone, Error error) {
   if (noted_[zone]) return;
   noted_[zone] = true;
-  const CatalogZone& known = catalog_.zones[zone];
-  faults_.push_back("zone " + known.name + " cannot be loaded: " + catalog_.folder + "/" +
-                    known.pack + ": " + to_string(error.code) + " (" +
-                    std::to_string(error.detail) +
-                    "); build the map again or copy the pack again, zonepack verify tells more");
+  faults_.push_back(load_fault(catalog_, zone, error));
 }
 
 }  // namespace zonepack

@@ -85,8 +85,8 @@ MapTerms map_terms(const RunChoices& choices, const Settings& settings) {
   terms.budget = choices.budget ? choices.budget : settings.memory.budget;
   terms.max_signatures = choices.max_signatures.value_or(settings.memory.max_signatures);
   terms.pinned = settings.memory.pinned;
-  terms.rates.storage =
-      choices.storage_rate.value_or(static_cast<std::uint64_t>(settings.loading.storage_rate));
+  terms.rates.storage = choices.storage_rate.value_or(
+      static_cast<std::uint64_t>(settings.loading.expected_storage_rate()));
   terms.rates.decode = static_cast<std::uint64_t>(settings.loading.decode_rate);
   terms.period_ns = static_cast<std::int64_t>(1e9 / settings.cycle.period_hz + 0.5);
   return terms;

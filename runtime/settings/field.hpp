@@ -20,7 +20,7 @@ struct Field {
                    bool Section::*, std::string Section::*, std::vector<std::string> Section::*,
                    std::optional<ByteCount> Section::*, PayloadChoice Section::*,
                    OdometryModel Section::*, WheelUnit Section::*, ByteOrder Section::*,
-                   SignalType Section::*>;
+                   SignalType Section::*, ReadMode Section::*>;
   const char* key;
   Member member;
   double least;
@@ -53,6 +53,11 @@ struct EnumWords<ByteOrder> {
 template <>
 struct EnumWords<SignalType> {
   static constexpr const char* kWords[] = {"unsigned", "signed", "float", "double"};
+};
+
+template <>
+struct EnumWords<ReadMode> {  // kCached is for tools
+  static constexpr const char* kWords[] = {"direct", "mapped", "buffered"};
 };
 
 // A signal as it stands in the file; defaults out of range must be given.

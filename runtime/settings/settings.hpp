@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
+#include "platform/storage.hpp"
 #include "runtime/odometry/can_signals.hpp"
 #include "runtime/odometry/pose_filter.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
@@ -36,10 +37,18 @@ struct MemorySettings {
   double lease_s = 2;               // how long a reader may hold a zone
 };
 
-// How fast loading is taken to be, for preloading and for simulated time.
+// How packs are read, and how fast loading is taken to be, for preloading and for simulated time.
 struct LoadingSettings {
+  ReadMode read = kDefaultReadMode;
+  std::uint64_t rate_limit = 0;      // bytes per second, 0: none
   double storage_rate = 50'000'000;  // stored bytes per second
   double decode_rate = 500'000'000;  // decoded bytes per second
+
+  // Stored bytes per second to reckon with.
+  double expected_storage_rate() const noexcept {
+    const auto limit = static_cast<double>(rate_limit);
+    return rate_limit != 0 && limit < storage_rate ? limit : storage_rate;
+  }
 };
 
 struct CanSettings {

@@ -238,6 +238,10 @@ std::string YamlSection::parse(const YAML::Node& node, double, double, const cha
                                SignalType& value) {
   return parse_word(node, value);
 }
+std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                               ReadMode& value) {
+  return parse_word(node, value);
+}
 
 std::string number_text(double value) {
   const double size = std::abs(value);

@@ -91,6 +91,7 @@ class YamlSection {
   static std::string parse(const YAML::Node&, double, double, const char*, WheelUnit&);
   static std::string parse(const YAML::Node&, double, double, const char*, ByteOrder&);
   static std::string parse(const YAML::Node&, double, double, const char*, SignalType&);
+  static std::string parse(const YAML::Node&, double, double, const char*, ReadMode&);
 
   std::string path_;
   FaultList& faults_;

@@ -102,7 +102,7 @@ Loader time_loader(const Catalog& catalog, const Zone& zone, std::span<std::byte
                    std::span<std::byte> buffer) {
   Loader times;
   const double begin = now_s();
-  Result<ZoneLoad> load = ZoneLoad::begin(catalog, zone.id, slots, buffer);
+  Result<ZoneLoad> load = ZoneLoad::begin(catalog, zone.id, slots, buffer, ReadMode::kCached);
   if (!load) fail(zone.path + ": " + to_string(load.error().code));
   const double opened = now_s();
   for (;;) {
