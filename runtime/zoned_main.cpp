@@ -34,8 +34,12 @@ CLI::Option* add_parsed(CLI::App& app, const char* name, const char* type, const
       ->type_name(type);
 }
 
+void need(const char* option, const std::string& given) {
+  if (given.empty()) throw CLI::RequiredError(option);
+}
+
 void add_choices(CLI::App& app, RunChoices& choices) {
-  add_file(app, "--config", choices.config, "settings of the robot (YAML)")->required();
+  add_file(app, "--config", choices.config, "settings of the robot (YAML)");
   app.add_option("--map", choices.map, "map folder; else map.path of the settings")
       ->type_name("DIR");
   add_file(app, "--corrections", choices.corrections,
@@ -71,15 +75,28 @@ void add_replay(CLI::App& app, ReplayArguments& arguments, int& exit_code) {
   };
   add_choices(replay, arguments);
   replay.add_option("--can", arguments.can, "CAN log, as candump -l or -L writes it")
-      ->type_name("LOG")
-      ->required();
+      ->type_name("LOG");
+  add_file(replay, "--recording", arguments.recording,
+           "what zoned run --record or zonectl dump wrote: instead of settings, map and log");
   add_file(replay, "--events", arguments.events, "write the event log, one JSON object a line");
   add_file(replay, "--json", arguments.json, "write the summary as JSON ('-': standard output)");
   drawing("--report", arguments.report, "draw the run: .html, .svg or .png");
   drawing("--picture", arguments.picture, "draw only its route, loading curves and bytes");
   add_file(replay, "--baseline", arguments.baseline,
            "RTAB-Map's own curve of this run (CSV), to draw beside ours");
-  replay.callback([&] { exit_code = zonepack::run_replay(arguments); });
+  replay.callback([&] {
+    if (arguments.recording.empty()) {
+      need("--config", arguments.config);
+      need("--can", arguments.can);
+    } else {
+      for (const std::string* const other : {&arguments.config, &arguments.map, &arguments.can,
+                                             &arguments.corrections, &arguments.truth}) {
+        if (other->empty()) continue;
+        throw CLI::ValidationError("--recording", "holds settings, map and inputs; give no other");
+      }
+    }
+    exit_code = zonepack::run_replay(arguments);
+  });
 }
 
 void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
@@ -98,7 +115,12 @@ void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
   add_file(run, "--json", arguments.json, "write the summary as JSON ('-': standard output)");
   run.add_flag("--allow-degraded", arguments.allow_degraded,
                "go on without real-time priority or locked memory");
-  run.callback([&] { exit_code = zonepack::run_live(arguments); });
+  add_file(run, "--record", arguments.record, "write every input, for zoned replay --recording");
+  run.callback([&] {
+    need("--config", arguments.config);
+    arguments.program = ZONEPACK_VERSION;
+    exit_code = zonepack::run_live(arguments);
+  });
 }
 
 }  // namespace

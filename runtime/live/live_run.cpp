@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <iostream>
 #include <string_view>
 
 #include "platform/clock.hpp"
@@ -17,12 +18,15 @@
 #include "runtime/live/scribe.hpp"
 #include "runtime/memory/shared_map.hpp"
 #include "runtime/replay/run_recorder.hpp"
+#include "runtime/state/state_saver.hpp"
 
 namespace zonepack {
 namespace {
 
 constexpr std::size_t kNotes = 2048;
 constexpr std::int64_t kWatch_ns = 20'000'000;
+
+void tell(const std::string& message) { std::cerr << "zoned: " + message + "\n"; }
 
 double us(std::int64_t ns) { return static_cast<double>(ns) / 1000; }
 
@@ -72,14 +76,18 @@ struct LiveRun::Parts {
         loader(map.catalog, shared),
         notes(kNotes),
         log([this](ZoneId zone) { return std::string_view(map.graph.name(zone)); }),
+        recording(log),
         truth(inputs.truth ? &*inputs.truth : nullptr),
-        teller(map.catalog, log),
+        teller(map.catalog, recording),
         recorder(map.graph, map.needs, truth, period_ns, map.limits, teller),
         scribe(notes, recorder),
         events(notes, nullptr, overload) {}
 
   bool open_source(std::string& fault);
   bool place_at_start(std::string& fault);
+  void restore_state();
+  void begin_at(const RecordedStart& start);
+  bool open_recorder(std::string& fault);
   bool start_threads(std::string& fault);
   ControlSettings control_settings() const;
   void control() noexcept;
@@ -95,6 +103,9 @@ struct LiveRun::Parts {
   LiveLoader loader;
   SpscQueue<LiveNote> notes;
   EventLog log;
+  LiveRecorder recording;
+  std::optional<StateStore> state_store;
+  std::optional<StateSaver> state_saver;
   const TruthTrack* truth;
   EventTeller teller;
   RunRecorder recorder;
@@ -137,7 +148,51 @@ bool LiveRun::Parts::place_at_start(std::string& fault) {
       return false;
     }
   }
-  if (start) cycle->start_at(feed->start_ns(), *start);
+  restore_state();
+  if (start) begin_at({feed->start_ns(), *start, {}, {}});
+  return true;
+}
+
+// Where the robot was when it stopped, unless somebody knows better.
+void LiveRun::Parts::restore_state() {
+  if (options.recorder.state_folder.empty()) return;
+  state_store.emplace(options.recorder.state_folder);
+  const StateStore::Found found = state_store->load(map.catalog.lineage);
+  for (const std::string& note : found.notes) tell(note);
+  SavedState next;
+  next.map_lineage = map.catalog.lineage;
+  next.map_version = map.catalog.version;
+  next.runs = 1 + (found.state ? found.state->runs : 0);
+  if (found.state && options.start.kind == StartChoice::Kind::kFix) {
+    const RestoredStart guess = guess_from(*found.state, inputs.settings.pose);
+    begin_at({feed->start_ns(), guess.T_map_base, guess.sigma_m, guess.sigma_rad});
+  }
+  const auto look = [this] {
+    const LiveStatus now = status.load();
+    return StateGlimpse{now.now_ns, now.state.pose, now.state.zone};
+  };
+  const auto name_of = [this](ZoneId zone) { return map.graph.name(zone); };
+  state_saver.emplace(*state_store, next, look, name_of, tell);
+}
+
+void LiveRun::Parts::begin_at(const RecordedStart& start) {
+  options.preface.start = start;
+  if (start.sigma_m && start.sigma_rad) {
+    cycle->start_at(start.now_ns, start.T_map_base, *start.sigma_m, *start.sigma_rad);
+  } else {
+    cycle->start_at(start.now_ns, start.T_map_base);
+  }
+}
+
+bool LiveRun::Parts::open_recorder(std::string& fault) {
+  std::vector<std::string> warnings;
+  const bool opened = recording.open(options.recorder, options.preface, map.needs.size(),
+                                     inputs.settings.cycle.most_frames, fault, warnings);
+  for (const std::string& warning : warnings) tell(warning);
+  options.preface = {};
+  if (!opened || recording.tap() == nullptr) return opened;
+  recording.tap()->follow(cycle->state());
+  scribe.add_task([this] { recording.drain(); });
   return true;
 }
 
@@ -170,6 +225,11 @@ bool LiveRun::Parts::start_threads(std::string& fault) {
     return false;
   };
   if (const auto started = scribe.start(); !started) return refused("scribe", started.error());
+  if (state_saver) {
+    if (const auto started = state_saver->start(); !started) {
+      return refused("state", started.error());
+    }
+  }
   const ThreadSettings for_loader{.name = "zoned-loader",
                                   .fifo_priority = static_cast<int>(realtime.loader_priority)};
   if (const auto started = loader.start(for_loader, options.allow_degraded); !started) {
@@ -206,7 +266,7 @@ bool LiveRun::start(std::string& fault) {
   p.cycle = std::make_unique<Cycle>(cycle_config(p.inputs.settings),
                                     CycleParts{p.map.graph, p.map.needs, p.map.load_s, p.map.pinned,
                                                p.memory, p.loader, p.events, &p.shared});
-  if (!p.place_at_start(fault)) return false;
+  if (!p.place_at_start(fault) || !p.open_recorder(fault)) return false;
   p.in_use.emplace(MapInUse{p.map.catalog, p.map.graph, p.map.needs, p.memory, *p.cycle});
   p.maps.emplace(*p.in_use, p.loader, &p.shared);
   p.loop = std::make_unique<ControlLoop>(p.control_settings(),
@@ -217,6 +277,7 @@ bool LiveRun::start(std::string& fault) {
                                                       .notes = p.events,
                                                       .overload = p.overload,
                                                       .logged_corrections = p.feed->corrections(),
+                                                      .recorder = p.recording.tap(),
                                                       .status = p.status});
   return p.start_threads(fault);
 }
@@ -239,9 +300,14 @@ std::optional<RunSummary> LiveRun::finish(std::string& fault) {
   p.loader.stop();
   p.feed->stop();
   p.scribe.stop();
+  if (p.state_saver) p.state_saver->stop();
   auto hash = p.log.finish();
   if (!hash) {
     fault = p.options.events + ": cannot be written: " + to_string(hash.error().code);
+    return std::nullopt;
+  }
+  if (const auto problem = p.recording.finish(*hash)) {
+    fault = *problem;
     return std::nullopt;
   }
   const LiveStatus& last = p.loop->last_status();

@@ -8,6 +8,7 @@
 
 #include "platform/can_log.hpp"
 #include "runtime/live/can_source.hpp"
+#include "runtime/live/live_recorder.hpp"
 #include "runtime/replay/driven_map.hpp"
 #include "runtime/replay/run_inputs.hpp"
 #include "runtime/replay/run_summary.hpp"
@@ -18,6 +19,8 @@ struct LiveOptions {
   CanSourceChoice source;
   StartChoice start;
   std::string events;  // file; empty: none
+  RecorderChoice recorder;
+  RecordingPreface preface;  // but for the start
   bool allow_degraded = false;
 };
 

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/live/run_command.hpp"
 
+#include <cstdlib>
 #include <iostream>
+#include <utility>
 
-#include "platform/atomic_file.hpp"
+#include "platform/clock.hpp"
 #include "platform/realtime.hpp"
 #include "platform/signals.hpp"
+#include "platform/storage.hpp"
 #include "runtime/live/live_run.hpp"
+#include "runtime/pack_format/manifest_file.hpp"
 #include "runtime/replay/log_faults.hpp"
 #include "runtime/replay/summary_text.hpp"
 
@@ -16,6 +20,34 @@ namespace {
 int fail(const std::string& message, int exit_code = 1) {
   std::cerr << "zoned run: " << message << '\n';
   return exit_code;
+}
+
+// The settings' folder, else the one that the service manager made for us.
+std::string state_folder(const Settings& settings) {
+  if (!settings.state.folder.empty()) return settings.state.folder;
+  const char* const given = std::getenv("STATE_DIRECTORY");
+  const std::string folders = given != nullptr ? given : "";
+  return folders.substr(0, folders.find(':'));
+}
+
+// What a recording says before its first cycle. A complete message for what is wrong, or nothing.
+std::optional<std::string> make_preface(const RunArguments& arguments, const RunInputs& inputs,
+                                        const MapTerms& terms, RecordingPreface& preface) {
+  preface.program = arguments.program;
+  preface.realtime_ns = realtime_ns();
+  preface.settings_path = arguments.config;
+  preface.settings = inputs.settings_text;
+  preface.dbc = inputs.settings.can.dbc_text;
+  preface.map_folder = inputs.catalog.folder;
+  preface.terms = terms;
+  const std::string path = inputs.catalog.folder + "/" + std::string(kManifestName);
+  auto manifest =
+      read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail));
+  if (!manifest || manifest_digest(*manifest) != inputs.catalog.version) {
+    return path + ": changed while zoned was starting; start it again";
+  }
+  preface.manifest = std::move(manifest).value();
+  return std::nullopt;
 }
 
 }  // namespace
@@ -35,8 +67,12 @@ int run_live(const RunArguments& arguments) {
   if (!map) return fail(fault);
   if (map->warning) std::cerr << "zoned run: warning: " << *map->warning << '\n';
 
-  LiveRun run(inputs, *map,
-              {arguments.source, arguments.start, arguments.events, arguments.allow_degraded});
+  LiveOptions options{arguments.source,        arguments.start, arguments.events, {}, {},
+                      arguments.allow_degraded};
+  options.recorder = {arguments.record, state_folder(inputs.settings),
+                      inputs.settings.recorder.bytes};
+  if (const auto bad = make_preface(arguments, inputs, terms, options.preface)) return fail(*bad);
+  LiveRun run(inputs, *map, options);
   if (!run.start(fault)) return fail(fault);
   run.wait();
   auto summary = run.finish(fault);

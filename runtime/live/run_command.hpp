@@ -12,6 +12,8 @@ namespace zonepack {
 struct RunArguments : RunChoices {
   CanSourceChoice source;
   std::string events, json;  // json "-": standard output
+  std::string record;
+  std::string program;  // version, for recordings
   bool allow_degraded = false;
 };
 

@@ -31,9 +31,10 @@ void Scribe::run() {
   }
 }
 
+// No more than there is room for: tasks must have their turn while a fast log is played.
 void Scribe::drain() {
   LiveNote note;
-  while (notes_.pop(note)) {
+  for (std::size_t left = notes_.capacity(); left > 0 && notes_.pop(note); --left) {
     if (note.kind == LiveNote::Kind::kEvent) {
       recorder_.on_event(note.event);
     } else {

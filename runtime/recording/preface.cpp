@@ -21,6 +21,7 @@ enum class Field : std::uint8_t {
   kTerms = 7,
   kPinned = 8,
   kStart = 9,
+  kDbc = 10,
 };
 
 constexpr std::size_t kBlockContent = 512 * 1024;
@@ -34,7 +35,8 @@ std::string text_of(ByteSpan bytes) {
 
 std::size_t room_for(const RecordingPreface& preface) {
   std::size_t room = kFixedRoom + preface.program.size() + preface.settings_path.size() +
-                     preface.settings.size() + preface.map_folder.size() + preface.manifest.size();
+                     preface.settings.size() + preface.dbc.size() + preface.map_folder.size() +
+                     preface.manifest.size();
   for (const std::string& name : preface.terms.pinned) room += kFixedRoom + name.size();
   return room;
 }
@@ -58,6 +60,7 @@ void put_all(const RecordingPreface& preface, ByteWriter& out) {
   put(out, Field::kRealtime, [&](ByteWriter& field) { field.i64(preface.realtime_ns); });
   put(out, Field::kSettingsPath, bytes_of(preface.settings_path));
   put(out, Field::kSettings, bytes_of(preface.settings));
+  if (!preface.dbc.empty()) put(out, Field::kDbc, bytes_of(preface.dbc));
   put(out, Field::kMapFolder, bytes_of(preface.map_folder));
   put(out, Field::kManifest, ByteSpan(preface.manifest));
   put(out, Field::kTerms, [&](ByteWriter& field) {
@@ -132,6 +135,9 @@ Result<void> read_field(std::uint8_t kind, ByteSpan bytes, RecordingPreface& pre
       break;
     case Field::kSettings:
       preface.settings = text_of(bytes);
+      break;
+    case Field::kDbc:
+      preface.dbc = text_of(bytes);
       break;
     case Field::kMapFolder:
       preface.map_folder = text_of(bytes);

@@ -29,6 +29,7 @@ struct RecordingPreface {
   std::int64_t realtime_ns = 0;     // CLOCK_REALTIME at the start; 0: not told
   std::string settings_path;        // for messages, and what its relative paths refer to
   std::string settings;             // the file's text
+  std::string dbc;                  // the text of the file that can.dbc names; empty: none
   std::string map_folder;           // for messages
   std::vector<std::byte> manifest;  // the file's bytes
   MapTerms terms;                   // as the run had them, command line included

@@ -200,7 +200,7 @@ std::optional<RecordedRunResult> Run::result(const std::string& events_path, std
 }  // namespace
 
 std::optional<RecordedRun> open_recorded_run(const RecordingPreface& preface, std::string& fault) {
-  LoadedSettings loaded = parse_settings(preface.settings, preface.settings_path);
+  LoadedSettings loaded = parse_settings(preface.settings, preface.settings_path, preface.dbc);
   if (!loaded.ok()) {
     fault = "the recorded settings cannot be used by this version (recorded by " + preface.program +
             ")";

@@ -9,6 +9,7 @@
 #include "runtime/map/catalog.hpp"
 #include "runtime/replay/baseline.hpp"
 #include "runtime/replay/log_faults.hpp"
+#include "runtime/replay/recorded_run.hpp"
 #include "runtime/replay/replay.hpp"
 #include "runtime/replay/run_report.hpp"
 #include "runtime/replay/summary_text.hpp"
@@ -39,7 +40,8 @@ std::optional<std::string> write_results(const ReplayArguments& arguments, const
                                          const std::vector<BaselineRow>& baseline,
                                          const ReplayResult& result) {
   if (auto problem = write_summary(result.summary, arguments.json)) return problem;
-  const RunReportInput run{catalog.folder, arguments.can, result.summary, result.trace, baseline};
+  const std::string& driven = arguments.can.empty() ? arguments.recording : arguments.can;
+  const RunReportInput run{catalog.folder, driven, result.summary, result.trace, baseline};
   if (!arguments.picture.empty()) {
     if (auto problem = report::write_report(arguments.picture, make_run_picture(run))) {
       return problem;
@@ -49,9 +51,51 @@ std::optional<std::string> write_results(const ReplayArguments& arguments, const
   return report::write_report(arguments.report, make_run_report(run));
 }
 
+// The end of a replay that worked: results, and whether a limit was exceeded.
+int tell_results(const ReplayArguments& arguments, const Catalog& catalog,
+                 const std::vector<BaselineRow>& baseline, const ReplayResult& result) {
+  for (const std::string& text : result.faults) std::cerr << "zoned replay: " << text << '\n';
+  for (const std::string& text : result.warnings) {
+    std::cerr << "zoned replay: warning: " << text << '\n';
+  }
+  if (const auto unwritten = write_results(arguments, catalog, baseline, result)) {
+    return fail(*unwritten);
+  }
+  if (result.summary.budget_violations > 0) {
+    return fail("a limit was exceeded in " + std::to_string(result.summary.budget_violations) +
+                " cycles");
+  }
+  return 0;
+}
+
+int run_recording(const ReplayArguments& arguments) {
+  std::string fault;
+  auto recording = RecordingReader::open(arguments.recording, fault);
+  if (!recording) return fail(fault);
+  const auto run = open_recorded_run(recording->preface(), fault);
+  if (!run) return fail(arguments.recording + ": " + fault);
+  const auto result = replay_recording(*recording, *run, arguments.events, fault);
+  if (!result) return fail(arguments.recording + ": " + fault);
+  if (!recording->note().empty()) std::cerr << "zoned replay: " << recording->note() << '\n';
+  if (!result->exact) {
+    std::cerr << "zoned replay: " << arguments.recording << ": begins with cycle "
+              << result->first_cycle
+              << ", from a guess: decisions until the first fixes may differ from the run's\n";
+  }
+  const int exit_code = tell_results(arguments, run->catalog, {}, result->replay);
+  if (result->exact && result->complete && !result->live_hash.empty() &&
+      result->live_hash != result->replay.summary.event_log_hash) {
+    return fail(arguments.recording + ": the events differ from those of the run (event_log_hash " +
+                result->live_hash + "); replay with the version that recorded it, " +
+                recording->preface().program);
+  }
+  return exit_code;
+}
+
 }  // namespace
 
 int run_replay(const ReplayArguments& arguments) {
+  if (!arguments.recording.empty()) return run_recording(arguments);
   if (arguments.start.kind == StartChoice::Kind::kTruth && arguments.truth.empty()) {
     return fail("--start truth needs --truth FILE", 2);
   }
@@ -69,17 +113,7 @@ int run_replay(const ReplayArguments& arguments) {
   tell_log_faults(arguments.can, log.summary());
   if (!result) return fail(fault);
   result->summary.can_rejected += log.summary().broken_lines + log.summary().stray_stamps;
-  for (const std::string& text : result->faults) std::cerr << "zoned replay: " << text << '\n';
-  for (const std::string& text : result->warnings) {
-    std::cerr << "zoned replay: warning: " << text << '\n';
-  }
-  if (const auto unwritten = write_results(arguments, inputs.catalog, baseline, *result))
-    return fail(*unwritten);
-  if (result->summary.budget_violations > 0) {
-    return fail("a limit was exceeded in " + std::to_string(result->summary.budget_violations) +
-                " cycles");
-  }
-  return 0;
+  return tell_results(arguments, inputs.catalog, baseline, *result);
 }
 
 }  // namespace zonepack

@@ -10,6 +10,7 @@ namespace zonepack {
 // What `zoned replay` is told; empty paths: not given.
 struct ReplayArguments : RunChoices {
   std::string can;
+  std::string recording;             // instead of all other inputs
   std::string events, json, report;  // json "-": standard output
   std::string picture;               // the small picture
   std::string baseline;              // RTAB-Map's own curve, for both

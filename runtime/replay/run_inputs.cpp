@@ -52,6 +52,7 @@ std::optional<std::string> read_run_inputs(const RunChoices& choices, RunInputs&
     return all;
   }
   inputs.settings = std::move(loaded.settings);
+  inputs.settings_text = std::move(loaded.text);
   const std::string folder = choices.map.empty() ? inputs.settings.map.path : choices.map;
   if (folder.empty()) return "no map: give --map DIR or map.path in " + choices.config;
   Result<Catalog> catalog = Catalog::open(folder, inputs.settings.memory.payload.mask);

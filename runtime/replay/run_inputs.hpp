@@ -38,6 +38,7 @@ struct RunChoices {
 // Everything read from files before a run.
 struct RunInputs {
   Settings settings;
+  std::string settings_text;  // the file's
   Catalog catalog;
   std::vector<PoseCorrection> corrections;
   std::optional<TruthTrack> truth;

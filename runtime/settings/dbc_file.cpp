@@ -203,7 +203,9 @@ LoadedDbc load_dbc(const std::string& path) {
     return failed;
   }
   text.resize(size);
-  return parse_dbc(text, path);
+  LoadedDbc loaded = parse_dbc(text, path);
+  loaded.text = std::move(text);
+  return loaded;
 }
 
 }  // namespace zonepack

@@ -78,6 +78,7 @@ struct LoadedDbc {
 
   DbcFile file;                     // meaningful without faults only
   std::vector<std::string> faults;  // "file:line:column: expected ..., found ..."
+  std::string text;                 // of the file, when it was read
   bool ok() const noexcept { return faults.empty(); }
 };
 

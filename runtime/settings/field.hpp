@@ -103,5 +103,7 @@ const Fields<TrackerSettings>& zones_fields();
 const Fields<PreloadSettings>& preload_fields();
 const Fields<CycleSettings>& cycle_fields();
 const Fields<RealtimeSettings>& realtime_fields();
+const Fields<RecorderSettings>& recorder_fields();
+const Fields<StateSettings>& state_fields();
 
 }  // namespace zonepack

@@ -54,7 +54,9 @@ class SignalNames {
   SignalNames(CanSettings& can, FaultList& faults) : can_(can), faults_(faults) {}
 
   void load() {
-    LoadedDbc loaded = load_dbc(can_.dbc);
+    LoadedDbc loaded =
+        can_.dbc_text.empty() ? load_dbc(can_.dbc) : parse_dbc(can_.dbc_text, can_.dbc);
+    if (can_.dbc_text.empty()) can_.dbc_text = std::move(loaded.text);
     for (const std::string& fault : loaded.faults) faults_.add_complete(fault);
     dbc_broken_ = !loaded.ok();
     dbc_ = std::move(loaded.file);

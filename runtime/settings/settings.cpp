@@ -59,15 +59,22 @@ void read_file(const YAML::Node& root, const std::string& path, Settings& settin
   read_section(file, "zones", zones_fields(), settings.zones, faults);
   read_section(file, "preload", preload_fields(), settings.preload, faults);
   read_section(file, "realtime", realtime_fields(), settings.realtime, faults);
+  read_section(file, "recorder", recorder_fields(), settings.recorder, faults);
+  read_section(file, "state", state_fields(), settings.state, faults);
   file.finish();
   check_together(settings, faults);
-  if (!settings.map.path.empty()) settings.map.path = beside(path, settings.map.path);
+  for (std::string* const folder : {&settings.map.path, &settings.state.folder}) {
+    if (!folder->empty()) *folder = beside(path, *folder);
+  }
 }
 
 }  // namespace
 
-LoadedSettings parse_settings(const std::string& text, const std::string& path) {
+LoadedSettings parse_settings(const std::string& text, const std::string& path,
+                              const std::string& dbc_text) {
   LoadedSettings loaded;
+  loaded.text = text;
+  loaded.settings.can.dbc_text = dbc_text;
   FaultList faults(path);
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);

@@ -54,6 +54,7 @@ struct LoadingSettings {
 struct CanSettings {
   std::string interface;  // empty: any
   std::string dbc;        // as map.path; empty: not given
+  std::string dbc_text;   // of that file
   // Those written out, those of CANopen's process data as NODE.INDEX, and those of the DBC file
   // that odometry names.
   std::map<std::string, CanSignal> signals;
@@ -96,6 +97,16 @@ struct RealtimeSettings {
   bool lock_memory = true;
 };
 
+// The flight recorder of `zoned run`.
+struct RecorderSettings {
+  std::uint64_t bytes = 64 * kMiB;  // kept of the newest inputs; 0: off
+};
+
+// What survives a restart.
+struct StateSettings {
+  std::string folder;  // relative paths as of map.path; empty: $STATE_DIRECTORY, else nowhere
+};
+
 struct Settings {
   MapSettings map;
   MemorySettings memory;
@@ -107,12 +118,15 @@ struct Settings {
   PreloadSettings preload;
   CycleSettings cycle;
   RealtimeSettings realtime;
+  RecorderSettings recorder;
+  StateSettings state;
 };
 
 struct LoadedSettings {
   Settings settings;  // meaningful without faults only
   std::vector<std::string>
-      faults;  // all there are: "file:line: key: what is wrong; what is allowed"
+      faults;        // all there are: "file:line: key: what is wrong; what is allowed"
+  std::string text;  // the file's
   bool ok() const noexcept { return faults.empty(); }
 };
 
@@ -120,8 +134,9 @@ struct LoadedSettings {
 LoadedSettings load_settings(const std::string& path);
 
 // The same for a text; `path` stands in messages, and map.path and can.dbc are relative to its
-// folder.
-LoadedSettings parse_settings(const std::string& text, const std::string& path);
+// folder. dbc_text: instead of the file that can.dbc names.
+LoadedSettings parse_settings(const std::string& text, const std::string& path,
+                              const std::string& dbc_text = {});
 
 // Every section and key with type, range, unit, default and meaning, as Markdown:
 // config/SETTINGS.md.

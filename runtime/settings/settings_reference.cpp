@@ -90,8 +90,8 @@ std::string settings_reference() {
          "here, stands twice, has the wrong type or is out of range is refused with file, line and "
          "what is\n"
          "allowed, all faults at once. Keys that are absent have their default. A relative "
-         "map.path or can.dbc\n"
-         "is relative to the settings file.\n" +
+         "map.path, can.dbc\n"
+         "or state.folder is relative to the settings file.\n" +
          head("map") + rows(map_fields()) + head("memory") + rows(memory_fields()) +
          head("loading") + rows(loading_fields()) + head("can") + rows(can_fields()) +
          "| signals | signals by name | none | what frames hold; see below |\n"
@@ -104,7 +104,8 @@ std::string settings_reference() {
          rows(wheel_fields()) + rows(geometry_fields()) + rows(odometry_fields()) + head("pose") +
          rows(pose_fields()) + head("zones") + rows(zones_fields()) + head("preload") +
          rows(preload_fields()) + head("cycle") + rows(cycle_fields()) + head("realtime") +
-         rows(realtime_fields());
+         rows(realtime_fields()) + head("recorder") + rows(recorder_fields()) + head("state") +
+         rows(state_fields());
 }
 
 }  // namespace zonepack

@@ -258,4 +258,22 @@ const Fields<RealtimeSettings>& realtime_fields() {
   return fields;
 }
 
+const Fields<RecorderSettings>& recorder_fields() {
+  using S = RecorderSettings;
+  static const Fields<S> fields = {
+      {"bytes", &S::bytes, 0, kMost, "bytes",
+       "of the newest inputs that the flight recorder of zoned run keeps, at least 2 MiB; 0: off"},
+  };
+  return fields;
+}
+
+const Fields<StateSettings>& state_fields() {
+  using S = StateSettings;
+  static const Fields<S> fields = {
+      {"folder", &S::folder, 0, 0, "",
+       "where pose and flight recorder survive a restart; empty: $STATE_DIRECTORY, else nowhere"},
+  };
+  return fields;
+}
+
 }  // namespace zonepack

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "platform/realtime.hpp"
+#include "runtime/cycle.hpp"
+#include "runtime/state/state_store.hpp"
+
+namespace zonepack {
+
+// What the saver looks at: as the control thread last told it.
+struct StateGlimpse {
+  std::int64_t now_ns = 0;  // the run's clock
+  PoseEstimate pose;
+  ZoneId zone = kNoZone;
+};
+
+// Saves the robot's state when its zone changes, when the run ends, and else every minute: flash
+// wears. A folder that cannot be written costs the state, never the run: it is counted, told once,
+// and tried again.
+//
+// Threads: one that watches, its own unless watch() is called by hand; the control thread only
+// publishes.
+class StateSaver {
+ public:
+  static constexpr std::int64_t kPeriod_ns = 60'000'000'000;
+
+  // look: the newest glimpse. name_of: of a zone. tell: takes complete messages. All must outlive
+  // this object. `like` gives the map and the number of runs.
+  StateSaver(StateStore& store, SavedState like, std::function<StateGlimpse()> look,
+             std::function<std::string(ZoneId)> name_of, std::function<void(std::string)> tell);
+  ~StateSaver() { end_thread(); }
+
+  Result<void> start();
+  // Saves a last time.
+  void stop();
+
+  // Looks, and saves if it is time to.
+  void watch();
+
+  // Any thread.
+  std::uint64_t saved() const noexcept { return saved_.load(); }
+  std::uint64_t failures() const noexcept { return failures_.load(); }
+
+ private:
+  void save(const StateGlimpse& glimpse);
+  void end_thread() noexcept;
+
+  StateStore& store_;
+  SavedState state_;
+  std::function<StateGlimpse()> look_;
+  std::function<std::string(ZoneId)> name_of_;
+  std::function<void(std::string)> tell_;
+  ZoneId zone_ = kNoZone;  // as saved, or tried to
+  std::int64_t last_ns_ = 0;
+  bool tried_ = false;
+  bool failing_ = false;
+  std::atomic<std::uint64_t> saved_{0}, failures_{0};
+  std::atomic<bool> stop_{false};
+  Thread thread_;
+};
+
+// How sure a restored pose is taken to be: no surer than a pose that was given, and less sure than
+// it was.
+struct RestoredStart {
+  Pose2 T_map_base;
+  double sigma_m = 0, sigma_rad = 0;
+};
+RestoredStart guess_from(const SavedState& state, const PoseFilterSettings& settings);
+
+}  // namespace zonepack

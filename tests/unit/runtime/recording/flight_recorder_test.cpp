@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/recording/flight_recorder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "runtime/recording/flight_names.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/unit/runtime/recording/recorded_drive.hpp"
+
+namespace zonepack {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing_support::text_of;
+
+class FlightRecorderTest : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return folder / name; }
+
+  std::optional<RecordedRunResult> replay(const std::string& recording) {
+    auto reader = RecordingReader::open(recording, fault);
+    if (!reader) return std::nullopt;
+    auto result = replay_recording(*reader, drive.run(), path("again.jsonl"), fault);
+    note = reader->note();
+    return result;
+  }
+
+  // A block that hardly compresses, so that few fill the ring.
+  void append(FlightRecorder& flight, std::uint64_t cycle) {
+    if (flight.wants_segment()) {
+      Checkpoint checkpoint;
+      checkpoint.cycle = cycle;
+      flight.begin_segment(checkpoint, false);
+    }
+    CycleBlockWriter block(10);
+    std::mt19937_64 random(cycle);
+    std::vector<std::byte> records(60'000);
+    ByteWriter out(records);
+    out.u8(kFirstNoteKind);
+    out.varint(records.size() - 4);
+    while (out.size() < records.size()) out.u8(static_cast<std::uint8_t>(random()));
+    TappedCycle tapped;
+    tapped.head.cycle = cycle;
+    tapped.head.now_ns = static_cast<std::int64_t>(cycle) * 10;
+    tapped.records = records;
+    block.add(tapped);
+    std::vector<std::byte> sealed;
+    seal_block(BlockKind::kCycles, block.content(), sealed);
+    flight.append(sealed, cycle + 1);
+  }
+
+  test_support::TemporaryFolder folder;
+  testing_support::RecordedDrive drive;
+  std::string fault, note;
+};
+
+TEST_F(FlightRecorderTest, DumpsAWholeRunThatReplaysToTheSameEvents) {
+  for (const bool named : {true, false}) {
+    auto flight = FlightRecorder::open(path("."), named, 64 * kMiB, drive.preface());
+    ASSERT_TRUE(flight.ok());
+    drive.drive(5, path("live.jsonl"), nullptr, flight->get());
+    const auto dumped = (*flight)->dump(path("dump.zpr"));
+    ASSERT_TRUE(dumped.ok());
+    EXPECT_EQ(dumped->first_cycle, 0u);
+    EXPECT_EQ(dumped->bytes, fs::file_size(path("dump.zpr")));
+    const auto result = replay(path("dump.zpr"));
+    ASSERT_TRUE(result) << fault;
+    EXPECT_TRUE(result->exact && result->complete);
+    EXPECT_EQ(result->next_cycle, dumped->next_cycle);
+    EXPECT_EQ(text_of(path("again.jsonl")), text_of(path("live.jsonl")));
+    EXPECT_THAT(note, HasSubstr("when it was saved"));
+  }
+}
+
+TEST_F(FlightRecorderTest, DumpsWhileTheRunGoesOnUpToThatMoment) {
+  auto flight = FlightRecorder::open(path("flight"), true, 64 * kMiB, drive.preface());
+  std::uint64_t saved_at = 0;
+  drive.drive(6, path("live.jsonl"), nullptr, flight->get(),
+              [&](std::uint64_t cycle, InputWriter& writer) {
+                if (cycle % 50 == 0) writer.flush();
+                if (cycle == 5000) saved_at = (*flight)->dump(path("dump.zpr"))->next_cycle;
+              });
+  EXPECT_EQ(saved_at, 5001u);
+  const auto result = replay(path("dump.zpr"));
+  ASSERT_TRUE(result) << fault;
+  EXPECT_EQ(result->next_cycle, saved_at);
+  // The folder itself is a recording, also of a process that was killed.
+  const auto all = replay(path("flight"));
+  ASSERT_TRUE(all) << fault;
+  EXPECT_GT(all->next_cycle, 10'900u);
+  EXPECT_THAT(note, HasSubstr("without an end mark"));
+}
+
+TEST_F(FlightRecorderTest, KeepsItsBytesAndForgetsTheOldest) {
+  const ByteCount limit = 4 * kMiB;
+  auto flight = FlightRecorder::open(path("flight"), true, limit, drive.preface());
+  for (std::uint64_t cycle = 0; cycle < 300; ++cycle) {
+    append(**flight, cycle);
+    // The last block of a segment may go over: 60 kB in each of 8, and the preface.
+    EXPECT_LE((*flight)->kept_bytes(), limit + 8 * 65'000 + 10'000);
+  }
+  // 300 blocks of 60 kB are 18 MB; of 4 MiB at least 7 of 8 segments are full.
+  EXPECT_GE((*flight)->kept_bytes(), limit * 7 / 8);
+  EXPECT_EQ(flight_files(path("flight")).size(), 1 + FlightRecorder::kSegments);
+  const auto dumped = (*flight)->dump(path("dump.zpr"));
+  ASSERT_TRUE(dumped.ok());
+  EXPECT_GT(dumped->first_cycle, 200u);
+  EXPECT_EQ(dumped->next_cycle, 300u);
+  auto reader = RecordingReader::open(path("dump.zpr"), fault);
+  ASSERT_TRUE(reader) << fault;
+  ASSERT_TRUE(reader->checkpoint());
+  EXPECT_EQ(reader->checkpoint()->cycle, dumped->first_cycle);
+  while (reader->next() != nullptr) {
+  }
+  EXPECT_TRUE(reader->complete());
+  EXPECT_EQ(reader->cycles_read(), 300u);
+}
+
+TEST_F(FlightRecorderTest, KeepsTheFilesOfTheRunBefore) {
+  auto first = FlightRecorder::open(path("flight"), true, kMiB, drive.preface());
+  append(**first, 0);
+  auto second = FlightRecorder::open(path("flight"), true, kMiB, drive.preface());
+  ASSERT_TRUE(second.ok());
+  EXPECT_EQ((*second)->dump(path("dump.zpr")).error().code, ErrorCode::kNotFound);
+  auto reader = RecordingReader::open(path("flight-previous"), fault);
+  ASSERT_TRUE(reader) << fault;
+  EXPECT_NE(reader->next(), nullptr);
+}
+
+// The beginning is gone: from the checkpoint the run goes on as from a guess.
+TEST_F(FlightRecorderTest, GoesOnFromACheckpointAsFromAGuess) {
+  auto flight = FlightRecorder::open(path("flight"), true, 64 * kMiB, drive.preface());
+  bool lost = false;
+  drive.drive(7, path("live.jsonl"), nullptr, flight->get(),
+              [&](std::uint64_t cycle, InputWriter& writer) {
+                lost = cycle >= 500 && cycle < 7000;  // the tap overflows
+                if (!lost) writer.flush();
+              });
+  const auto dumped = (*flight)->dump(path("dump.zpr"));
+  ASSERT_TRUE(dumped.ok());
+  EXPECT_EQ(dumped->first_cycle, 7001u);  // 7000 found the tap still full
+  auto reader = RecordingReader::open(path("dump.zpr"), fault);
+  ASSERT_TRUE(reader && reader->checkpoint()) << fault;
+  EXPECT_TRUE(reader->checkpoint()->has_pose);
+  EXPECT_FALSE(reader->checkpoint()->resident.empty());
+  const auto result = replay(path("dump.zpr"));
+  ASSERT_TRUE(result) << fault;
+  EXPECT_FALSE(result->exact);
+  EXPECT_EQ(result->replay.summary.budget_violations, 0u);
+  // It ends where the run ended: the same zone, the same millimetres, for fixes have come.
+  const std::string live = text_of(path("live.jsonl")), again = text_of(path("again.jsonl"));
+  const auto end_of = [](const std::string& events) {
+    const std::string line = events.substr(events.rfind("{\"cycle\""));
+    return line.substr(0, line.find("\"charged")) + line.substr(line.find("\"x_mm\"") + 0, 12);
+  };
+  EXPECT_EQ(end_of(again), end_of(live));
+}
+
+TEST_F(FlightRecorderTest, CountsWhatItCannotWriteAndGoesOn) {
+  auto flight = FlightRecorder::open(path("flight"), true, kMiB, drive.preface());
+  append(**flight, 0);
+  fs::remove_all(path("flight"));
+  for (std::uint64_t cycle = 1; cycle < 100; ++cycle) append(**flight, cycle);
+  EXPECT_GT((*flight)->failures(), 0u);
+  EXPECT_EQ((*flight)->last_error().detail, ENOENT);
+  fs::create_directories(path("flight"));
+  for (std::uint64_t cycle = 100; cycle < 110; ++cycle) append(**flight, cycle);
+  const auto dumped = (*flight)->dump(path("dump.zpr"));
+  ASSERT_TRUE(dumped.ok());
+  EXPECT_EQ(dumped->first_cycle, 100u);
+  EXPECT_EQ(dumped->next_cycle, 110u);
+}
+
+}  // namespace
+}  // namespace zonepack
