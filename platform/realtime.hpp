@@ -42,6 +42,7 @@ class Thread {
 
 // Locks every page that the process has now, and no later one, into memory.
 Result<void> lock_memory_now() noexcept;
+void unlock_memory() noexcept;
 
 // One heap for all threads, never given back or moved, so that locked pages stay where they are.
 void use_one_heap() noexcept;

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "runtime/live/can_source.hpp"
+#include "runtime/live/check_command.hpp"
 #include "runtime/live/run_command.hpp"
 #include "runtime/replay/replay_command.hpp"
 #include "runtime/report/report.hpp"
@@ -116,10 +117,12 @@ void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
   run.add_flag("--allow-degraded", arguments.allow_degraded,
                "go on without real-time priority or locked memory");
   add_file(run, "--record", arguments.record, "write every input, for zoned replay --recording");
+  run.add_flag("--check", arguments.check,
+               "only say what would be refused, and what of this computer could be better");
   run.callback([&] {
     need("--config", arguments.config);
     arguments.program = ZONEPACK_VERSION;
-    exit_code = zonepack::run_live(arguments);
+    exit_code = arguments.check ? zonepack::check_run(arguments) : zonepack::run_live(arguments);
   });
 }
 

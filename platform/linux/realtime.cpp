@@ -133,6 +133,8 @@ Result<void> lock_memory_now() noexcept {
   return {};
 }
 
+void unlock_memory() noexcept { munlockall(); }
+
 void use_one_heap() noexcept {
   mallopt(M_ARENA_MAX, 1);
   mallopt(M_TRIM_THRESHOLD, INT_MAX);

@@ -15,6 +15,7 @@ struct RunArguments : RunChoices {
   std::string record;
   std::string program;  // version, for recordings
   bool allow_degraded = false;
+  bool check = false;  // see check_command.hpp
 };
 
 // Drives the robot's threads until the source ends or SIGTERM or SIGINT comes. The summary goes to

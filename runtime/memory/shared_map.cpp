@@ -63,6 +63,13 @@ void SharedMap::withdraw(ZoneId zone) noexcept {
   std::atomic_thread_fence(std::memory_order_seq_cst);
 }
 
+std::optional<std::uint32_t> SharedMap::generation(ZoneId zone) const noexcept {
+  if (zone >= header_->zone_capacity) return std::nullopt;
+  const std::uint64_t state = zones_[zone].state.load(std::memory_order_acquire);
+  if (state == 0) return std::nullopt;
+  return static_cast<std::uint32_t>(state);
+}
+
 std::span<std::byte> SharedMap::slot(SlotIndex index) noexcept {
   ZP_REQUIRE(index < header_->slot_count);
   return {memory_ + header_->slots_at + std::size_t{index} * kSlotBytes, kSlotBytes};

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "platform/base/byte_count.hpp"
@@ -30,6 +31,9 @@ class SharedMap final : public ZoneDirectory {
   // Another map's zones take the places of the last one's, all of which were withdrawn. kTooLarge
   // beyond the capacity.
   Result<void> begin_map(std::uint32_t zones) noexcept override;
+
+  // The load that can be read now; nothing when the zone cannot be. Any thread.
+  std::optional<std::uint32_t> generation(ZoneId zone) const noexcept;
 
   std::uint32_t slot_count() const noexcept { return header_->slot_count; }
   std::uint32_t zone_capacity() const noexcept { return header_->zone_capacity; }

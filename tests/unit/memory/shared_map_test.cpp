@@ -43,8 +43,10 @@ TEST_F(Shared, ShowsAZoneFromPublishToWithdraw) {
   EXPECT_EQ(zone(1).state.load(), std::uint64_t{header().epoch.load()} << 32 | 7);
   EXPECT_EQ(zone(1).head.load(), 2u);
   EXPECT_EQ(zone(1).slots.load(), 2u);
+  EXPECT_EQ(map->generation(1), 7u);
   map->withdraw(1);
   EXPECT_EQ(zone(1).state.load(), 0u);
+  EXPECT_FALSE(map->generation(1));
 }
 
 TEST_F(Shared, TakenOverAfterACrashShowsNothingOfBeforeAndNoStateTwice) {

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform/base/byte_count.hpp"
+
+namespace zonepack {
+
+// What a program needs of the computer it runs on.
+struct BoardNeeds {
+  int priority = 0;             // SCHED_FIFO
+  std::optional<unsigned> cpu;  // the processor that is to be the control thread's alone
+  ByteCount locked_bytes = 0;
+};
+
+// One thing about the computer that steady timing or the memory limit depends on.
+struct BoardFact {
+  std::string name;
+  std::string found;
+  bool good = true;
+  std::string mend;  // where it is not good: the exact line that mends it
+};
+
+// The kernel, PREEMPT_RT, frequency governor, idle states, real-time throttling, isolated
+// processors, interrupts, limits of locked memory and priority, memory compaction, page size, and
+// the memory limit of the cgroup. What the kernel does not tell is good, and says so.
+// `root`: where /proc and /sys are looked for ("" on a robot). Allocates; reads files.
+std::vector<BoardFact> inspect_board(const BoardNeeds& needs, const std::string& root = "");
+
+}  // namespace zonepack

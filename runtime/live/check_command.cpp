@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/live/check_command.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <iostream>
+#include <vector>
+
+#include "platform/board.hpp"
+#include "platform/can_log.hpp"
+#include "platform/realtime.hpp"
+#include "platform/shared_memory.hpp"
+#include "runtime/map/loader.hpp"
+#include "runtime/memory/shared_layout.hpp"
+#include "runtime/replay/driven_map.hpp"
+
+namespace zonepack {
+namespace {
+
+constexpr ByteCount kOverhead = 16 * kMiB;  // README: what a run takes beside its budget, at most
+
+struct Row {
+  enum class Kind { kGood, kWeak, kRefused };
+  Kind kind = Kind::kGood;
+  std::string name, found, mend;
+};
+
+std::string reason_of(const Error& error) {
+  return error.code == ErrorCode::kIo ? std::strerror(static_cast<int>(error.detail))
+                                      : to_string(error.code);
+}
+
+class Check {
+ public:
+  explicit Check(const RunArguments& arguments) : arguments_(arguments) {}
+
+  int run() {
+    if (settings_and_map() && budget()) {
+      packs();
+      memory();
+    }
+    source();
+    scheduler();
+    board();
+    return print();
+  }
+
+ private:
+  void good(std::string name, std::string found) {
+    rows_.push_back({Row::Kind::kGood, std::move(name), std::move(found), ""});
+  }
+  void refuse(std::string name, std::string found, std::string mend = "") {
+    rows_.push_back({Row::Kind::kRefused, std::move(name), std::move(found), std::move(mend)});
+  }
+  // What --allow-degraded goes on without.
+  void refuse_privilege(std::string name, std::string found, std::string mend) {
+    rows_.push_back({arguments_.allow_degraded ? Row::Kind::kWeak : Row::Kind::kRefused,
+                     std::move(name), std::move(found), std::move(mend)});
+  }
+
+  bool settings_and_map() {
+    if (const auto fault = read_run_inputs(arguments_, inputs_)) {
+      refuse("settings and map", *fault);
+      return false;
+    }
+    good("settings", arguments_.config);
+    good("map",
+         inputs_.catalog.folder + ", " + std::to_string(inputs_.catalog.zones.size()) + " zones");
+    return true;
+  }
+
+  bool budget() {
+    std::string fault;
+    map_ = DrivenMap::make(inputs_.catalog, map_terms(arguments_, inputs_.settings), fault);
+    if (!map_) {
+      refuse("budget", fault);
+      return false;
+    }
+    if (map_->warning) {
+      rows_.push_back({Row::Kind::kWeak, "budget", *map_->warning, "see zonepack plan"});
+    } else {
+      good("budget", std::to_string(map_->limits.budget) + " bytes");
+    }
+    Residency trial(map_->needs.size(), map_->limits);
+    if (!map_->pin(trial, fault)) refuse("pinned zones", fault);
+    return true;
+  }
+
+  void packs() {
+    for (ZoneId zone = 0; zone < inputs_.catalog.zones.size(); ++zone) {
+      const auto pack = open_pack(inputs_.catalog, zone);
+      if (pack) continue;
+      refuse("packs",
+             inputs_.catalog.folder + "/" + inputs_.catalog.zones[zone].pack + ": " +
+                 to_string(pack.error().code),
+             "copy the map again; zonepack verify tells more");
+      return;
+    }
+    good("packs", "all " + std::to_string(inputs_.catalog.zones.size()) + " there, at full length");
+  }
+
+  void memory() {
+    const auto zones = static_cast<std::uint32_t>(map_->needs.size());
+    const auto memory = SharedMemory::create("zoned-check", shared_map_bytes(zones, map_->slots));
+    if (!memory) {
+      refuse("memory", reason_of(memory.error()), "allow less by memory.budget");
+      return;
+    }
+    good("memory", std::to_string(memory->read_only().size()) + " bytes reserved for a moment");
+    if (!inputs_.settings.realtime.lock_memory) return;
+    const auto locked = lock_memory_now();
+    if (locked) {
+      good("memory lock", "granted");
+    } else {
+      refuse_privilege("memory lock", reason_of(locked.error()),
+                       "LimitMEMLOCK=infinity in the unit, or realtime.lock_memory: false");
+    }
+    unlock_memory();
+  }
+
+  void source() {
+    if (arguments_.source.kind != CanSourceChoice::Kind::kLog) return;
+    CanLogReader log(arguments_.source.name, inputs_.settings.can.interface);
+    if (const auto opened = log.open(); !opened) {
+      refuse("CAN log", log.explain(opened.error()));
+    } else {
+      good("CAN log", arguments_.source.name);
+    }
+  }
+
+  void scheduler() {
+    const RealtimeSettings& realtime = inputs_.settings.realtime;
+    const auto thread = Thread::start({.name = "zoned-check",
+                                       .fifo_priority = static_cast<int>(realtime.priority),
+                                       .cpu = realtime.cpu.empty() ? -1 : std::stoi(realtime.cpu)},
+                                      false, [] {});
+    if (thread) {
+      good("scheduler", "SCHED_FIFO " + std::to_string(realtime.priority) + " granted");
+    } else {
+      refuse_privilege("scheduler", reason_of(thread.error()),
+                       "LimitRTPRIO=" + std::to_string(realtime.priority) +
+                           " in the unit, and a processor that exists in realtime.cpu");
+    }
+  }
+
+  void board() {
+    BoardNeeds needs;
+    const RealtimeSettings& realtime = inputs_.settings.realtime;
+    needs.priority = static_cast<int>(realtime.priority);
+    if (!realtime.cpu.empty()) needs.cpu = static_cast<unsigned>(std::stoul(realtime.cpu));
+    if (map_) needs.locked_bytes = map_->limits.budget + kOverhead;
+    for (BoardFact& fact : inspect_board(needs)) {
+      rows_.push_back({fact.good ? Row::Kind::kGood : Row::Kind::kWeak, std::move(fact.name),
+                       std::move(fact.found), std::move(fact.mend)});
+    }
+  }
+
+  int print() const {
+    std::size_t width = 0;
+    for (const Row& row : rows_) width = std::max(width, row.name.size());
+    std::size_t refused = 0, weak = 0;
+    for (const Row& row : rows_) {
+      const bool no = row.kind == Row::Kind::kRefused, so_so = row.kind == Row::Kind::kWeak;
+      refused += no;
+      weak += so_so;
+      std::cout << (no      ? "REFUSED  "
+                    : so_so ? "weak     "
+                            : "ok       ")
+                << row.name << std::string(width - row.name.size() + 2, ' ') << row.found << '\n';
+      if (!row.mend.empty()) {
+        std::cout << std::string(9 + width + 2, ' ') << "mend: " << row.mend << '\n';
+      }
+    }
+    std::cout << (refused > 0 ? "The run would be refused" : "The run would start") << "; " << weak
+              << " of " << rows_.size() << " things could be better.\n";
+    return refused > 0 ? 1 : 0;
+  }
+
+  const RunArguments& arguments_;
+  RunInputs inputs_;
+  std::unique_ptr<DrivenMap> map_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace
+
+int check_run(const RunArguments& arguments) { return Check(arguments).run(); }
+
+}  // namespace zonepack
