@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// zoned: the robot's program. Wiring only; `replay` lives in runtime/replay, `run` in runtime/live.
+// zoned: the robot's program. Wiring only; `replay` lives in runtime/replay, `run` in runtime/live,
+// `calibrate` in runtime/calibrate.
 #include <CLI/CLI.hpp>
 
+#include "runtime/calibrate/calibrate_command.hpp"
 #include "runtime/live/can_source.hpp"
 #include "runtime/live/check_command.hpp"
 #include "runtime/live/run_command.hpp"
@@ -126,6 +128,18 @@ void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
   });
 }
 
+void add_calibrate(CLI::App& app, zonepack::CalibrateArguments& arguments, int& exit_code) {
+  CLI::App& calibrate = *app.add_subcommand(
+      "calibrate", "estimates wheel scale and track from a drive whose true path is known");
+  add_file(calibrate, "--config", arguments.config, "settings of the robot (YAML)")->required();
+  calibrate.add_option("--can", arguments.can, "CAN log of the drive")
+      ->type_name("LOG")
+      ->required();
+  add_file(calibrate, "--truth", arguments.truth, "true poses: t x y z qx qy qz qw")->required();
+  add_file(calibrate, "--json", arguments.json, "write the result as JSON");
+  calibrate.callback([&] { exit_code = zonepack::run_calibrate(arguments); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -140,6 +154,8 @@ int main(int argc, char** argv) {
   add_replay(app, arguments, exit_code);
   RunArguments run_arguments;
   add_run(app, run_arguments, exit_code);
+  zonepack::CalibrateArguments calibrate_arguments;
+  add_calibrate(app, calibrate_arguments, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/calibrate/calibrate_command.hpp"
+
+#include <array>
+#include <charconv>
+#include <iostream>
+
+#include "platform/atomic_file.hpp"
+#include "platform/can_log.hpp"
+#include "runtime/odometry/det_math.hpp"
+
+namespace zonepack {
+namespace {
+
+constexpr double kDegree = 180 / kPi;
+
+int fail(const std::string& message) {
+  std::cerr << "zoned calibrate: " << message << '\n';
+  return 1;
+}
+
+std::string fixed(double value, int decimals) {
+  std::array<char, 64> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
+                                 std::chars_format::fixed, decimals)
+                       .ptr;
+  return {text.data(), end};
+}
+
+bool has_sides(OdometryModel model) {
+  return model == OdometryModel::kDifferentialPositions || model == OdometryModel::kWheelSpeeds;
+}
+
+std::string padded(std::string text, std::size_t width) {
+  if (text.size() < width) text.insert(0, width - text.size(), ' ');
+  return text;
+}
+
+std::string row(const char* name, double before, double after, int decimals, const char* unit) {
+  std::string text = "  " + std::string(name);
+  text.resize(22, ' ');
+  return text + padded(fixed(before, decimals), 10) + padded(fixed(after, decimals), 12) + " " +
+         unit + "\n";
+}
+
+std::string table(const Calibration& c) {
+  const CalibrationErrors& a = c.before;
+  const CalibrationErrors& b = c.after;
+  return "dead reckoning          present  calibrated\n" +
+         row("error at the end", a.end_m, b.end_m, 3, "m") +
+         row("RMSE", a.rmse_m, b.rmse_m, 3, "m") +
+         row("drift", a.drift_percent, b.drift_percent, 2, "% of the way") +
+         row("heading at the end", a.heading_rad * kDegree, b.heading_rad * kDegree, 2, "degrees");
+}
+
+std::string key(const char* name, double value, double sigma) {
+  return "  " + std::string(name) + ": " + fixed(value, 6) + "  # +- " + fixed(sigma, 6) + "\n";
+}
+
+std::string json_of(const char* name, const CalibrationErrors& errors) {
+  return "  \"" + std::string(name) + "\": {\"end_m\": " + fixed(errors.end_m, 6) +
+         ", \"rmse_m\": " + fixed(errors.rmse_m, 6) +
+         ", \"drift_percent\": " + fixed(errors.drift_percent, 6) +
+         ", \"heading_rad\": " + fixed(errors.heading_rad, 6) + "}";
+}
+
+std::string json_of(const Calibration& c) {
+  return "{\n  \"distance_m\": " + fixed(c.distance_m, 3) +
+         ",\n  \"turned_rad\": " + fixed(c.turned_rad, 3) +
+         ",\n  \"seconds\": " + fixed(c.seconds, 3) +
+         ",\n  \"windows\": " + std::to_string(c.windows) +
+         ",\n  \"left\": " + fixed(c.fitted.left, 9) +
+         ",\n  \"right\": " + fixed(c.fitted.right, 9) +
+         ",\n  \"track_m\": " + fixed(c.fitted.track_m, 9) +
+         ",\n  \"scale_sigma\": " + fixed(c.scale_sigma, 9) +
+         ",\n  \"track_sigma_m\": " + fixed(c.track_sigma_m, 9) +
+         ",\n  \"difference\": " + fixed(c.difference, 9) +
+         ",\n  \"difference_sigma\": " + fixed(c.difference_sigma, 9) +
+         ",\n  \"sides_differ\": " + (c.sides_differ ? "true" : "false") + ",\n" +
+         json_of("before", c.before) + ",\n" + json_of("after", c.after) + "\n}\n";
+}
+
+}  // namespace
+
+std::optional<std::vector<WheelStep>> read_wheel_steps(const Settings& settings,
+                                                       const std::string& can, std::string& fault) {
+  CanLogReader log(can, settings.can.interface);
+  if (const auto opened = log.open(); !opened) {
+    fault = log.explain(opened.error());
+    return std::nullopt;
+  }
+  const WheelOdometrySettings& wheels = settings.odometry.wheels;
+  const double half_track = wheels.geometry.track_m * wheels.geometry.slip_factor / 2;
+  WheelOdometry odometry(wheels);
+  std::vector<WheelStep> steps;
+  while (const auto frame = log.next()) {
+    const std::uint64_t breaks = odometry.counters().gaps + odometry.counters().rebased;
+    const auto increment = odometry.take(*frame);
+    if (!increment || increment->to_ns <= increment->from_ns) continue;
+    const double seconds = static_cast<double>(increment->to_ns - increment->from_ns) * 1e-9;
+    const double forward = increment->speed_m_s * seconds;
+    const double turn = increment->yaw_rate_rad_s * seconds;
+    const bool known = breaks == odometry.counters().gaps + odometry.counters().rebased;
+    steps.push_back({increment->from_ns, increment->to_ns, forward - turn * half_track,
+                     forward + turn * half_track, known});
+  }
+  if (steps.empty()) {
+    fault = can +
+            ": holds none of the frames that odometry reads, or fewer than two; check "
+            "can.interface and the signals of the settings";
+    return std::nullopt;
+  }
+  return steps;
+}
+
+std::string calibrated_yaml(const Calibration& calibration, const OdometrySettings& odometry) {
+  const Calibration& c = calibration;
+  const double mean = (c.fitted.left + c.fitted.right) / 2;
+  std::string text = "odometry:\n";
+  if (odometry.unit == WheelUnit::kMetres) {
+    text += key("scale", odometry.scale * mean, odometry.scale * c.scale_sigma);
+  } else {
+    text += key("wheel_radius", odometry.wheel_radius_m * mean,
+                odometry.wheel_radius_m * c.scale_sigma);
+  }
+  if (c.sides_differ) {
+    text += key("scale_left", odometry.scale_left * c.fitted.left / mean, c.difference_sigma / 2);
+    text +=
+        key("scale_right", odometry.scale_right * c.fitted.right / mean, c.difference_sigma / 2);
+  }
+  const WheelGeometry& geometry = odometry.wheels.geometry;
+  if (geometry.slip_factor == 1) {
+    text += key("track", c.fitted.track_m, c.track_sigma_m);
+  } else {
+    text +=
+        key("slip_factor", c.fitted.track_m / geometry.track_m, c.track_sigma_m / geometry.track_m);
+  }
+  return text;
+}
+
+int run_calibrate(const CalibrateArguments& arguments) {
+  const LoadedSettings loaded = load_settings(arguments.config);
+  if (!loaded.ok()) {
+    std::string all = "settings cannot be used";
+    for (const std::string& fault : loaded.faults) all += "\n  " + fault;
+    return fail(all);
+  }
+  const OdometrySettings& odometry = loaded.settings.odometry;
+  if (!has_sides(odometry.wheels.model)) {
+    return fail(arguments.config +
+                ": odometry.model: wheel scale and track are those of differential-positions and "
+                "wheel-speeds; other models are measured by hand");
+  }
+  std::string fault;
+  const auto truth = read_truth(arguments.truth, fault);
+  if (!truth) return fail(fault);
+  const auto steps = read_wheel_steps(loaded.settings, arguments.can, fault);
+  if (!steps) return fail(fault);
+  const auto result = calibrate(*steps, *truth, odometry.wheels, fault);
+  if (!result) return fail(arguments.can + " with " + arguments.truth + ": " + fault);
+
+  std::cout << arguments.can << ": " << fixed(result->distance_m, 1) << " m, "
+            << fixed(result->turned_rad, 1) << " rad of turning, " << fixed(result->seconds, 1)
+            << " s in " << result->windows << " windows\n\n"
+            << table(*result) << '\n'
+            << "left and right wheel: " << fixed(result->difference * 100, 3) << " +- "
+            << fixed(result->difference_sigma * 100, 3) << " % apart, "
+            << (result->sides_differ ? "over 3 sigma: told apart"
+                                     : "less than 3 sigma: taken to be alike")
+            << "\n\nPaste over the same keys of " << arguments.config << ":\n\n"
+            << calibrated_yaml(*result, odometry);
+  if (arguments.json.empty()) return 0;
+  if (const auto written = write_file_atomically(arguments.json, json_of(*result)); !written) {
+    return fail(arguments.json + ": cannot be written: " + to_string(written.error().code));
+  }
+  return 0;
+}
+
+}  // namespace zonepack

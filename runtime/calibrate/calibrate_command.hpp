@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/calibrate/calibration.hpp"
+#include "runtime/settings/settings.hpp"
+
+namespace zonepack {
+
+// What `zoned calibrate` is told; empty json: not given.
+struct CalibrateArguments {
+  std::string config, can, truth, json;
+};
+
+// Reads the log with the settings, estimates wheel scale and track against the truth, and prints
+// the YAML to paste with the errors before and after. Returns the exit code: 0, or 1 when something
+// could not be read or written, or the drive tells too little.
+int run_calibrate(const CalibrateArguments& arguments);
+
+// The keys of the section odometry that change, as YAML to paste over the present ones.
+std::string calibrated_yaml(const Calibration& calibration, const OdometrySettings& odometry);
+
+// What the wheels did over a log, by the settings. Nothing when it cannot be read; `fault` tells.
+std::optional<std::vector<WheelStep>> read_wheel_steps(const Settings& settings,
+                                                       const std::string& can, std::string& fault);
+
+}  // namespace zonepack

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/odometry/wheel_odometry.hpp"
+#include "runtime/replay/run_files.hpp"
+
+// Scale of the wheels and track of a robot with a left and a right side, from a drive whose true
+// path is known. Not for the control thread.
+namespace zonepack {
+
+// What the wheels did between two accepted samples, as the present settings see it.
+struct WheelStep {
+  std::int64_t from_ns = 0;
+  std::int64_t to_ns = 0;
+  double left_m = 0;
+  double right_m = 0;
+  bool known = true;  // false: a gap or a jump, whose path is not known
+};
+
+// Corrections of the present settings.
+struct CalibrationValues {
+  double left = 1;   // true over reported way of the left wheel
+  double right = 1;  // and of the right
+  double track_m = 0;
+};
+
+struct CalibrationErrors {
+  double end_m = 0;          // distance to the truth at the end, when dead reckoning begins at it
+  double rmse_m = 0;         // of the distance, over the drive
+  double heading_rad = 0;    // at the end, estimate less truth
+  double drift_percent = 0;  // end_m of the distance
+};
+
+struct Calibration {
+  CalibrationValues nominal, fitted;
+  bool sides_differ = false;    // left and right told apart: their difference is over 3 sigma
+  double scale_sigma = 0;       // standard deviation of the mean of left and right
+  double difference_sigma = 0;  // of right - left
+  double difference = 0;        // right - left, were it told apart
+  double track_sigma_m = 0;
+  CalibrationErrors before, after;
+  double distance_m = 0;
+  double turned_rad = 0;  // sum of all turning, either way
+  double seconds = 0;
+  std::size_t windows = 0;
+};
+
+// Least squares over the drive. Cut into windows of kWindow_s, the errors of dead reckoning are
+// independent of each other, for wheels slip at random: each window's motion is compared with the
+// truth's, weighted by the noise that the settings tell for its way and turn. The two sides are
+// told apart only when the data do: a difference that is mere noise would bend every later path.
+// Nothing when the drive cannot tell; `fault` says what drive is needed.
+inline constexpr double kCalibrationWindow_s = 2;
+inline constexpr double kLeastDistance_m = 10;
+inline constexpr double kLeastTurn_rad = 6.3;
+std::optional<Calibration> calibrate(const std::vector<WheelStep>& steps, const TruthTrack& truth,
+                                     const WheelOdometrySettings& settings, std::string& fault);
+
+// Dead reckoning with these values against the truth, from the first step that it covers.
+CalibrationErrors errors_with(const CalibrationValues& values, const std::vector<WheelStep>& steps,
+                              const TruthTrack& truth);
+
+}  // namespace zonepack

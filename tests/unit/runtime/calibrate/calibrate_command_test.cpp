@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// zoned calibrate on scenario 1, whose robot has wheels 0.5 % larger and a track 1 % wider than
+// told.
+#include "runtime/calibrate/calibrate_command.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace zonepack {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string kConfig = ZONEPACK_SOURCE_DIR "/config/agilex.yaml";
+const std::string kLog = ZONEPACK_TEST_DATA "/scenario1_loop/can0.log";
+const std::string kTruth = ZONEPACK_TEST_DATA "/scenario1_loop/base_groundtruth.txt";
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+Calibration calibrate_scenario1(const Settings& settings) {
+  std::string fault;
+  const auto steps = read_wheel_steps(settings, kLog, fault);
+  const auto truth = read_truth(kTruth, fault);
+  EXPECT_TRUE(steps && truth) << fault;
+  const auto found = calibrate(*steps, *truth, settings.odometry.wheels, fault);
+  EXPECT_TRUE(found.has_value()) << fault;
+  return found.value_or(Calibration{});
+}
+
+// The text with each line of the section odometry replaced that `yaml` has, too.
+std::string pasted(std::string text, const std::string& yaml) {
+  std::istringstream lines(yaml);
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "odometry:");
+  while (std::getline(lines, line)) {
+    const std::string key = "\n" + line.substr(0, line.find(':') + 1);
+    const std::size_t at = text.find(key, text.find("\nodometry:"));
+    EXPECT_NE(at, std::string::npos) << key;
+    text.replace(at + 1, text.find('\n', at + 1) - at - 1, line);
+  }
+  return text;
+}
+
+TEST(CalibrateCommand, FindsWhatTheSimulatedRobotReallyIs) {
+  const Calibration c = calibrate_scenario1(load_settings(kConfig).settings);
+  EXPECT_NEAR(c.fitted.left, 1.005, 3 * c.scale_sigma);
+  EXPECT_NEAR(c.fitted.track_m, 0.413 * 1.01, 3 * c.track_sigma_m);
+  EXPECT_LT(c.scale_sigma, 0.001);
+  EXPECT_LT(c.track_sigma_m, 0.0015);
+  EXPECT_FALSE(c.sides_differ);
+  EXPECT_NEAR(c.distance_m, 88, 1);
+  EXPECT_LT(c.after.end_m, c.before.end_m);
+}
+
+TEST(CalibrateCommand, WhatItPrintsCanBePastedAndThenChangesNothingMore) {
+  const Calibration first = calibrate_scenario1(load_settings(kConfig).settings);
+  const std::string yaml = calibrated_yaml(first, load_settings(kConfig).settings.odometry);
+  EXPECT_THAT(yaml, HasSubstr("  scale: 1.00"));
+  EXPECT_THAT(yaml, HasSubstr("  track: 0.41"));
+  const LoadedSettings after = parse_settings(pasted(text_of(kConfig), yaml), "a.yaml");
+  ASSERT_THAT(after.faults, IsEmpty());
+  const Calibration second = calibrate_scenario1(after.settings);
+  EXPECT_NEAR(second.fitted.left, 1, 1e-5);
+  EXPECT_NEAR(second.fitted.track_m, first.fitted.track_m, 1e-5);
+  EXPECT_NEAR(second.before.end_m, first.after.end_m, 1e-3);
+}
+
+TEST(CalibrateCommand, WritesTheKeysThatTheRobotHas) {
+  Calibration c;
+  c.fitted = {1.01, 0.99, 0.6};
+  c.sides_differ = true;
+  OdometrySettings odometry;
+  odometry.unit = WheelUnit::kTurns;
+  odometry.wheel_radius_m = 0.1;
+  odometry.scale_right = 2;
+  odometry.wheels.geometry.track_m = 0.4;
+  odometry.wheels.geometry.slip_factor = 1.4;
+  const std::string yaml = calibrated_yaml(c, odometry);
+  EXPECT_THAT(yaml, HasSubstr("  wheel_radius: 0.100000  #"));
+  EXPECT_THAT(yaml, HasSubstr("  scale_left: 1.010000  #"));
+  EXPECT_THAT(yaml, HasSubstr("  scale_right: 1.980000  #"));
+  EXPECT_THAT(yaml, HasSubstr("  slip_factor: 1.500000  #"));
+}
+
+TEST(CalibrateCommand, WritesJsonAndTellsWhatIsWrong) {
+  const std::string json = testing::TempDir() + "calibration.json";
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(run_calibrate({kConfig, kLog, kTruth, json}), 0);
+  const std::string out = testing::internal::GetCapturedStdout();
+  EXPECT_THAT(out, HasSubstr("error at the end         1.0"));
+  EXPECT_THAT(out,
+              HasSubstr("Paste over the same keys of " + kConfig + ":\n\nodometry:\n  scale: "));
+  const auto result = nlohmann::json::parse(text_of(json));
+  EXPECT_NEAR(result["left"], 1.005, 0.003);
+  EXPECT_GT(result["before"]["end_m"], result["after"]["end_m"]);
+  EXPECT_EQ(result["sides_differ"], false);
+
+  const auto fault_of = [](const CalibrateArguments& arguments) {
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(run_calibrate(arguments), 1);
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_THAT(fault_of({"/none.yaml", kLog, kTruth, ""}), HasSubstr("/none.yaml: cannot be read"));
+  EXPECT_THAT(fault_of({kConfig, "/none.log", kTruth, ""}), HasSubstr("/none.log"));
+  EXPECT_THAT(fault_of({kConfig, kLog, "/none.txt", ""}), HasSubstr("/none.txt"));
+  EXPECT_THAT(fault_of({ZONEPACK_SOURCE_DIR "/config/vesc.yaml", kLog, kTruth, ""}),
+              HasSubstr("holds none of the frames that odometry reads"));
+  const std::string twist = testing::TempDir() + "twist.yaml";
+  std::ofstream(twist) << "can: {signals: {a: {id: 1, length: 8}}}\n"
+                          "odometry: {model: twist, forward: a, yaw_rate: a}\n";
+  EXPECT_THAT(fault_of({twist, kLog, kTruth, ""}),
+              HasSubstr("wheel scale and track are those of differential-positions"));
+}
+
+}  // namespace
+}  // namespace zonepack
