@@ -134,7 +134,8 @@ class SignatureDecoder {
     const std::size_t points = scan_row_bytes_ == 0 ? 0 : scan_rows_.size() / scan_row_bytes_;
     for_each_scan_index(column, [&](std::uint32_t index) {
       if (index >= points) fail("grid cells refer to points beyond the scan");
-      const auto begin = scan_rows_.begin() + std::ptrdiff_t{index} * scan_row_bytes_;
+      const auto begin =
+          scan_rows_.begin() + static_cast<std::ptrdiff_t>(index * std::size_t{scan_row_bytes_});
       out.insert(out.end(), begin, begin + scan_row_bytes_);
     });
   }

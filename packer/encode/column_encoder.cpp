@@ -282,15 +282,16 @@ std::optional<EncodedColumn> LatticeEncoder::encode(std::span<const std::byte> c
   LatticeHeader header{cell_size, *origin_x_, *origin_y_, *left, iy.front(), 0, 0};
   header.width = static_cast<std::uint32_t>(*right - *left + 1);
   header.height = static_cast<std::uint32_t>(iy.back() - iy.front() + 1);
-  const std::uint64_t bitmap = (std::uint64_t{header.width} * header.height + 7) / 8;
-  if (bitmap + sizeof header >= cells.size()) return std::nullopt;
+  const std::uint64_t bitmap_bytes = (std::uint64_t{header.width} * header.height + 7) / 8;
+  if (bitmap_bytes + sizeof header >= cells.size()) return std::nullopt;
+  const auto bitmap = static_cast<std::size_t>(bitmap_bytes);
 
   EncodedColumn column{fb::Field::Row, fb::ColumnCodec::Lattice, 0, 0, 0, {}};
   append(column.bytes, &header, sizeof header);
   column.bytes.resize(sizeof header + bitmap);
   for (std::size_t i = 0; i < rows; ++i) {
-    const std::uint64_t bit = static_cast<std::uint64_t>(iy[i] - header.first_y) * header.width +
-                              static_cast<std::uint64_t>(ix[i] - header.first_x);
+    const auto bit = static_cast<std::size_t>(iy[i] - header.first_y) * header.width +
+                     static_cast<std::size_t>(ix[i] - header.first_x);
     column.bytes[sizeof header + bit / 8] |= static_cast<std::byte>(1u << (bit % 8));
   }
   return column;

@@ -45,7 +45,7 @@ struct MapOutline {
   std::size_t poses_without_node = 0;  // optimised poses of nodes not above: deleted or never there
   std::size_t landmark_poses = 0;      // optimised poses with negative ids
   std::map<std::int32_t, std::size_t> unlinked_by_session;  // nodes without one, by map_id
-  std::size_t links_to_missing_nodes = 0;  // Link rows whose to_id > 0 is in no Node row
+  std::uint64_t links_to_missing_nodes = 0;  // Link rows whose to_id > 0 is in no Node row
 
   std::string parameters;  // "Key:value;Key:value", as RTAB-Map last saved them
   std::optional<OptimisedMap> optimised_map;

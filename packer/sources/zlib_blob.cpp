@@ -67,7 +67,7 @@ void MatrixUnpacker::unpack(std::span<const std::byte> blob, const Place& place,
     place.damaged("declares " + describe(out) + ", more than " + std::to_string(zipped) +
                   " zipped bytes can hold");
   }
-  out.data.resize(bytes);
+  out.data.resize(static_cast<std::size_t>(bytes));
 
   // A stream for nothing still needs somewhere to point.
   std::byte nothing{};

@@ -102,8 +102,9 @@ class MapVerifier {
       report({.file = kManifest}, manifest_fault({ErrorCode::kTooLarge, 0}), kCopyAgain);
       return nullptr;
     }
-    words_.resize(((*file)->size() + 7) / 8);
-    const auto bytes = std::as_writable_bytes(std::span(words_)).first((*file)->size());
+    const auto size = static_cast<std::size_t>((*file)->size());
+    words_.resize((size + 7) / 8);
+    const auto bytes = std::as_writable_bytes(std::span(words_)).first(size);
     if (const auto read = (*file)->read_at(0, bytes); !read) {
       report({.file = kManifest}, "cannot be read: " + to_text(read.error()), kCopyAgain);
       return nullptr;

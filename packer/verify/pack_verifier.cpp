@@ -105,8 +105,9 @@ bool PackVerifier::read_frame() {
 }
 
 bool PackVerifier::read_index(ByteSpan header) {
-  words_.resize((tail_.index_size + 7) / 8);
-  const auto index = std::as_writable_bytes(std::span(words_)).first(tail_.index_size);
+  const auto size = static_cast<std::size_t>(tail_.index_size);
+  words_.resize((size + 7) / 8);
+  const auto index = std::as_writable_bytes(std::span(words_)).first(size);
   if (!read(tail_.index_offset, index, "the index")) return false;
   const Result<const fb::PackIndex*> checked = check_index(header, index, tail_);
   if (!checked) {

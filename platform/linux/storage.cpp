@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <utility>
 
 #include "platform/base/require.hpp"
@@ -219,6 +220,7 @@ Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t 
   if (mode == ReadMode::kDirect) mode = ReadMode::kBuffered;  // into place, wherever that is
   Result<StorageFile> file = StorageFile::open(path, mode);
   if (!file) return file.error();
+  limit = std::min<std::uint64_t>(limit, PTRDIFF_MAX);
   if (file->size() > limit) return {ErrorCode::kTooLarge, static_cast<std::int64_t>(file->size())};
   std::vector<std::byte> bytes(file->size());
   for (std::size_t at = 0; at < bytes.size();) {

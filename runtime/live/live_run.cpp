@@ -39,15 +39,21 @@ LiveFigures::Timing timing_of(const Histogram& histogram) {
 class MapMemory {
  public:
   explicit MapMemory(ByteCount bytes)
-      : block_(static_cast<std::byte*>(std::aligned_alloc(4096, bytes)), std::free), bytes_(bytes) {
+      : size_(size_of(bytes)),
+        block_(static_cast<std::byte*>(std::aligned_alloc(4096, size_)), std::free) {
     ZP_REQUIRE(block_ != nullptr);
-    std::memset(block_.get(), 0, bytes);
+    std::memset(block_.get(), 0, size_);
   }
-  std::span<std::byte> bytes() noexcept { return {block_.get(), bytes_}; }
+  std::span<std::byte> bytes() noexcept { return {block_.get(), size_}; }
 
  private:
+  static std::size_t size_of(ByteCount bytes) {
+    ZP_REQUIRE(bytes <= PTRDIFF_MAX);
+    return static_cast<std::size_t>(bytes);
+  }
+
+  std::size_t size_;
   std::unique_ptr<std::byte, decltype(&std::free)> block_;
-  ByteCount bytes_;
 };
 
 std::uint32_t zones_with_room_for_another_map(std::size_t zones) {

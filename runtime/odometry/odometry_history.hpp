@@ -30,8 +30,8 @@ class OdometryHistory {
   bool full() const noexcept { return count_ == entries_.size(); }
   std::uint64_t oldest() const noexcept { return first_; }
   std::uint64_t newest() const noexcept { return first_ + count_ - 1; }
-  Entry& at(std::uint64_t index) noexcept { return entries_[index % entries_.size()]; }
-  const Entry& at(std::uint64_t index) const noexcept { return entries_[index % entries_.size()]; }
+  Entry& at(std::uint64_t index) noexcept { return entries_[place(index)]; }
+  const Entry& at(std::uint64_t index) const noexcept { return entries_[place(index)]; }
   Entry& back() noexcept { return at(newest()); }
   const Entry& back() const noexcept { return at(newest()); }
 
@@ -68,6 +68,10 @@ class OdometryHistory {
   void replay_from(std::uint64_t from) noexcept;
 
  private:
+  std::size_t place(std::uint64_t index) const noexcept {
+    return static_cast<std::size_t>(index % entries_.size());
+  }
+
   std::vector<Entry> entries_;
   std::uint64_t first_ = 0;
   std::size_t count_ = 0;

@@ -28,7 +28,9 @@ class PackReader {
 
  private:
   PackReader(StorageFile file, const PackTail& tail)
-      : file_(std::move(file)), tail_(tail), words_((tail.index_size + 7) / 8) {}
+      : file_(std::move(file)),
+        tail_(tail),
+        words_(static_cast<std::size_t>((tail.index_size + 7) / 8)) {}
   StorageFile file_;
   PackTail tail_;
   std::vector<std::uint64_t> words_;  // the index, aligned
