@@ -1,18 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-# install(): programs, libraries, headers and the package that find_package(zonepack) reads.
+# install(): programs, libraries, headers and the package that find_package(zonepack) reads, in the components
+# runtime (the robot), tools (the workstation) and dev: toolchains/cross/packages.sh makes a .deb of each.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/zonepack)
+add_custom_target(installed)  # builds all that install() takes, and no tests
 
 function(zonepack_install_libraries export)
-  install(TARGETS ${ARGN} EXPORT ${export} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(EXPORT ${export} NAMESPACE zonepack:: DESTINATION ${package_dir})
+  install(TARGETS ${ARGN} EXPORT ${export} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          COMPONENT dev)
+  add_dependencies(installed ${ARGN})
+  install(EXPORT ${export} NAMESPACE zonepack:: DESTINATION ${package_dir} COMPONENT dev)
 endfunction()
 
 # Headers stand below include/zonepack as they stand in the source tree.
 function(zonepack_install_headers)
   foreach(dir ${ARGN})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${dir} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/zonepack
-            FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
+            COMPONENT dev FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
   endforeach()
 endfunction()
 
@@ -22,19 +26,25 @@ zonepack_install_libraries(zonepack-runtime zonepack_pack_format zonepack_report
                            zonepack_runtime)
 zonepack_install_headers(platform runtime)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/generated/runtime
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/zonepack FILES_MATCHING PATTERN "*_generated.h")
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/zonepack COMPONENT dev FILES_MATCHING PATTERN "*_generated.h")
 if(ZONEPACK_BUILD_PACKER)
   zonepack_install_libraries(zonepack-packer zonepack_packer)
   zonepack_install_headers(packer)
 endif()
-foreach(program zonepack zoned)
+foreach(program zoned zonectl)
   if(TARGET ${program})
-    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
+    add_dependencies(installed ${program})
   endif()
 endforeach()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/zonepack/config)
+if(TARGET zonepack)
+  install(TARGETS zonepack RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
+  add_dependencies(installed zonepack)
+endif()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/zonepack/config
+        COMPONENT runtime)
 install(FILES ${PROJECT_SOURCE_DIR}/runtime/pack_format/FORMAT.md OPTIONAL
-        DESTINATION ${CMAKE_INSTALL_DOCDIR})
+        DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT dev)
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/toolchains/cmake/zonepackConfig.cmake.in
                               ${PROJECT_BINARY_DIR}/zonepackConfig.cmake
@@ -42,4 +52,5 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/toolchains/cmake/zonepackCon
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/zonepackConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/zonepackConfig.cmake
-              ${PROJECT_BINARY_DIR}/zonepackConfigVersion.cmake DESTINATION ${package_dir})
+              ${PROJECT_BINARY_DIR}/zonepackConfigVersion.cmake DESTINATION ${package_dir}
+        COMPONENT dev)
