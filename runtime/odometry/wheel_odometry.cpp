@@ -252,6 +252,7 @@ std::optional<OdometryIncrement> WheelOdometry::take(const CanFrame& frame) noex
     booted_ = last_.has_value();
     suspect_.reset();
   }
+  counters_.canopen = watch_.counters();
   const std::optional<Sample> sample = complete_sample(frame);
   if (!sample) return std::nullopt;
   if (!last_) {

@@ -63,6 +63,7 @@ struct WheelOdometryCounters {
   std::uint64_t rebased =
       0;  // new starting points after a jump that stayed or a clock that ran back
   std::uint64_t unwatched = 0;  // of the refused: while a watched CANopen node or SYNC was missing
+  CanOpenCounters canopen;
 };
 
 // Motion of a wheeled robot from the frames of a CAN bus.
@@ -90,7 +91,6 @@ class WheelOdometry {
   std::optional<std::int64_t> newest_ns() const noexcept;
 
   const WheelOdometryCounters& counters() const noexcept { return counters_; }
-  const CanOpenCounters& canopen_counters() const noexcept { return watch_.counters(); }
 
  private:
   struct Side {

@@ -129,7 +129,7 @@ TEST(CanOpenOdometry, GoesStaleWhenAHeartbeatIsLostAndBridgesThePauseAfterwards)
   EXPECT_FALSE(drives.at(320, 310));
   EXPECT_FALSE(drives.at(640, 630));
   EXPECT_TRUE(drives.odometry->stale(640 * kMs));
-  EXPECT_EQ(drives.odometry->canopen_counters().heartbeats_lost, 2u);
+  EXPECT_EQ(drives.odometry->counters().canopen.heartbeats_lost, 2u);
   drives.heartbeat(650);
   const auto step = drives.at(660, 650);
   ASSERT_TRUE(step);

@@ -240,5 +240,24 @@ TEST(PoseFilter, WithoutFixesTheUncertaintyGrowsAndAFixIsTakenBack) {
   EXPECT_EQ(drive.correct_now(2 * after, 0, 0), Verdict::kUsed);
 }
 
+TEST(PoseFilter, CarriesSidewaysMotionOnToNow) {
+  PoseFilter filter{PoseFilterSettings{}};
+  filter.start_at(0, {});
+  for (int i = 1; i <= 100; ++i) {
+    OdometryIncrement increment;
+    increment.from_ns = (i - 1) * 20 * kMs;
+    increment.to_ns = i * 20 * kMs;
+    increment.motion.pose = {0, 0.01, 0};  // 0.5 m/s to the left
+    increment.sideways_m_s = 0.5;
+    filter.predict(increment);
+  }
+  // 1 m by the last increment, 2.5 cm in the 50 ms since.
+  const PoseEstimate estimate = filter.estimate(2050 * kMs);
+  EXPECT_NEAR(estimate.T_map_base.y_m, 1.025, 1e-6);
+  EXPECT_NEAR(estimate.sideways_m_s, 0.5, 1e-6);
+  filter.drift_until(3000 * kMs);
+  EXPECT_EQ(filter.estimate(3000 * kMs).sideways_m_s, 0);
+}
+
 }  // namespace
 }  // namespace zonepack

@@ -69,6 +69,18 @@ TEST_F(PreloadTest, DoesNotApproachADoorThatIsMerelyPassed) {
   }
 }
 
+TEST_F(PreloadTest, ApproachesTheDoorThatARobotMovesSidewaysTo) {
+  // Facing north, 0.45 m from the door in the east; to the right is negative.
+  PoseEstimate pose = pose_at(3.55, 2, kPi / 2);
+  pose.sideways_m_s = 1;
+  at(pose, 0, 0);
+  EXPECT_EQ(approached(), Zones{});
+  preload.restart();
+  pose.sideways_m_s = -1;
+  at(pose, 0, 0);
+  EXPECT_EQ(approached(), Zones{1});
+}
+
 TEST_F(PreloadTest, DoesNotApproachAWall) {
   at(pose_at(3.8, 0.5), 0, 1.0);
   EXPECT_EQ(approached(), Zones{});
