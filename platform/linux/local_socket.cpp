@@ -97,9 +97,11 @@ Result<LocalSocket::Received> LocalSocket::receive(std::span<std::byte> buffer) 
   header.msg_control = control;
   header.msg_controllen = sizeof control;
   ssize_t got = 0;
+  bool reset = false;  // the peer closed without reading all: told once, before what it had sent
   do {
+    reset = got < 0 && errno == ECONNRESET;
     got = ::recvmsg(fd_.get(), &header, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
-  } while (got < 0 && errno == EINTR);
+  } while (got < 0 && (errno == EINTR || (errno == ECONNRESET && !reset)));
   Received received;
   if (got < 0) {
     if (would_wait(errno)) return {ErrorCode::kBusy, errno};

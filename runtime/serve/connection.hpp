@@ -47,6 +47,7 @@ class Connection {
   // Waits for something unasked and hands it over; true when something came.
   Result<bool> listen(int timeout_ms);
 
+  const LocalSocket& socket() const noexcept { return socket_; }
   int fd() const noexcept { return socket_.fd(); }
   void set_timeout_ms(int timeout_ms) noexcept { timeout_ms_ = timeout_ms; }
 

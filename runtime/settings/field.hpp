@@ -102,6 +102,7 @@ const Fields<PoseFilterSettings>& pose_fields();
 const Fields<TrackerSettings>& zones_fields();
 const Fields<PreloadSettings>& preload_fields();
 const Fields<CycleSettings>& cycle_fields();
+const Fields<ServeSettings>& serve_fields();
 const Fields<RealtimeSettings>& realtime_fields();
 const Fields<RecorderSettings>& recorder_fields();
 const Fields<StateSettings>& state_fields();

@@ -44,6 +44,12 @@ void check_together(const Settings& settings, FaultList& faults) {
   if (settings.odometry.wheels.timeout_s < 2 / settings.cycle.period_hz) {
     faults.add(nowhere, "odometry.timeout", "must be at least two cycles (cycle.period_hz)");
   }
+  for (const auto& [key, mode] : {std::pair("serve.mode", settings.serve.mode),
+                                  std::pair("serve.looking_mode", settings.serve.looking_mode)}) {
+    if (!socket_mode(mode)) {
+      faults.add(nowhere, key, "\"" + mode + "\" is no mode; expected octal digits such as 0660");
+    }
+  }
 }
 
 void read_file(const YAML::Node& root, const std::string& path, Settings& settings,
@@ -54,6 +60,7 @@ void read_file(const YAML::Node& root, const std::string& path, Settings& settin
   read_section(file, "loading", loading_fields(), settings.loading, faults);
   // Before the signals, whose timeouts are told in cycles.
   read_section(file, "cycle", cycle_fields(), settings.cycle, faults);
+  read_section(file, "serve", serve_fields(), settings.serve, faults);
   read_odometry(file, path, settings, faults);
   read_section(file, "pose", pose_fields(), settings.pose, faults);
   read_section(file, "zones", zones_fields(), settings.zones, faults);

@@ -13,6 +13,7 @@
 #include "runtime/odometry/pose_filter.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
 #include "runtime/pack_format/chunk_view.hpp"
+#include "runtime/serve/serve_settings.hpp"
 #include "runtime/zones/preload.hpp"
 #include "runtime/zones/tracker.hpp"
 
@@ -117,6 +118,7 @@ struct Settings {
   TrackerSettings zones;
   PreloadSettings preload;
   CycleSettings cycle;
+  ServeSettings serve;
   RealtimeSettings realtime;
   RecorderSettings recorder;
   StateSettings state;

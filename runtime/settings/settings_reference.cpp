@@ -105,7 +105,7 @@ std::string settings_reference() {
          rows(pose_fields()) + head("zones") + rows(zones_fields()) + head("preload") +
          rows(preload_fields()) + head("cycle") + rows(cycle_fields()) + head("realtime") +
          rows(realtime_fields()) + head("recorder") + rows(recorder_fields()) + head("state") +
-         rows(state_fields());
+         rows(state_fields()) + head("serve") + rows(serve_fields());
 }
 
 }  // namespace zonepack

@@ -276,4 +276,19 @@ const Fields<StateSettings>& state_fields() {
   return fields;
 }
 
+const Fields<ServeSettings>& serve_fields() {
+  using S = ServeSettings;
+  static const Fields<S> fields = {
+      {"socket", &S::socket, 0, 0, "", "local socket for other programs; \"\" for none"},
+      {"mode", &S::mode, 0, 0, "", "who may use it: octal digits, as chmod takes them"},
+      {"looking_socket", &S::looking_socket, 0, 0, "",
+       "a second one, through which nothing can be changed"},
+      {"looking_mode", &S::looking_mode, 0, 0, "", "who may use that"},
+      {"clients", &S::clients, 1, 1000, "", "programs connected at once"},
+      {"requests", &S::requests_per_s, 1, 1e6, "1/s", "of each program; more of them wait"},
+      {"lease", &S::lease_s, 0.01, 3600, "s", "how long a reader may hold a zone at a time"},
+  };
+  return fields;
+}
+
 }  // namespace zonepack

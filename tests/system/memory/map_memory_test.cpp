@@ -9,6 +9,7 @@
 #include "runtime/map_keeper.hpp"
 #include "runtime/memory/arena.hpp"
 #include "runtime/replay/map_model.hpp"
+#include "runtime/serve/server.hpp"
 #include "runtime/zones/preload.hpp"
 #include "runtime/zones/tracker.hpp"
 #include "tests/support/signature_recipe.hpp"
@@ -103,6 +104,9 @@ TEST_P(MapMemory, IsNeverMoreThanWhatIsCharged) {
   const MapKeeper keeper(memory, loader, stamper, needs, {});
   const ZoneTracker tracker(graph);
   const Preload preload(graph, load_s);
+  const ZoneTable served(needs.size());
+  const Result<NodeStore> nodes = NodeStore::open(*catalog);
+  ASSERT_TRUE(nodes.ok());
 
   const std::size_t taken = live_bytes() - before + sizeof graph + sizeof memory + sizeof keeper +
                             sizeof tracker + sizeof preload;

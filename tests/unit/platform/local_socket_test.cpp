@@ -57,6 +57,17 @@ TEST_F(LocalSockets, CarryWholeMessagesBothWaysAndKnowThePeer) {
   EXPECT_EQ(pair.server.send(bytes_of("late")).error().code, ErrorCode::kCancelled);
 }
 
+TEST_F(LocalSockets, WhatThePeerSaidLastIsReadThoughItClosedWithoutReading) {
+  const auto listener = LocalListener::listen(path, 0600);
+  Pair pair = connected(*listener);
+  ASSERT_TRUE(pair.client.send(bytes_of("unread")).ok());
+  ASSERT_TRUE(pair.server.send(bytes_of("go away")).ok());
+  pair.server.close();
+  std::byte buffer[16];
+  EXPECT_EQ(pair.client.receive(buffer)->bytes, 7u);
+  EXPECT_EQ(pair.client.receive(buffer)->bytes, 0u);
+}
+
 TEST_F(LocalSockets, HandOverDescriptorsAndKeepNoneBeyondTheirNumber) {
   const auto listener = LocalListener::listen(path, 0600);
   Pair pair = connected(*listener);

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "platform/spsc_queue.hpp"
+#include "runtime/command.hpp"
+#include "runtime/serve/zone_table.hpp"
+
+namespace zonepack {
+
+// Takes commands of clients to the control thread and its replies back, and remembers who holds
+// which lease, so that a client's end is the end of its leases.
+//
+// The control thread is never waited for: a full queue refuses the command, an answer that does not
+// come in kPatience_ns is given up. Threads: one, the server's. Bounds: kMostPending commands,
+// kMostLeases leases.
+class CommandDesk {
+ public:
+  static constexpr std::size_t kMostPending = 256;
+  static constexpr std::size_t kMostLeases = 1024;
+  static constexpr std::int64_t kPatience_ns = 2'000'000'000;
+
+  using ClientKey = std::uint64_t;  // never used twice
+
+  // Who asked, what for, and what became of it. kBusy: no answer in time.
+  struct Settled {
+    ClientKey client = 0;
+    std::uint64_t request_id = 0;
+    Command::Kind kind = Command::Kind::kPin;
+    CommandReply reply;
+  };
+
+  CommandDesk(SpscQueue<Command>& commands, SpscQueue<CommandReply>& replies);
+
+  // The table of the map in use, told of pins and leases.
+  void use(ZoneTable& zones) noexcept { zones_ = &zones; }
+
+  // kBusy: too much is under way; kTooLarge: too many leases; kNotFound: a release of what is not
+  // this client's.
+  Result<void> post(ClientKey client, std::uint64_t request_id, Command command,
+                    std::int64_t monotonic_ns);
+
+  // Takes the replies that came. run_ns: the run's clock, by which leases end after lease_ns.
+  void settle(std::int64_t monotonic_ns, std::int64_t run_ns, std::int64_t lease_ns,
+              const std::function<void(const Settled&)>& tell);
+
+  // Releases what it holds or still gets.
+  void client_gone(ClientKey client);
+
+  // Zone numbers mean other zones from here on: leases are over, replies under way are refused.
+  void map_changed();
+
+  std::size_t pending() const noexcept { return pending_.size(); }
+  std::size_t leases() const noexcept { return held_.size(); }
+
+ private:
+  struct Pending {
+    Settled settled;
+    ZoneId zone = kNoZone;
+    std::uint64_t command_id = 0;
+    std::int64_t give_up_ns = 0;
+  };
+  struct Held {
+    ClientKey client = 0;
+    Lease lease;
+    std::int64_t ends_ns = 0;
+  };
+
+  bool hand_over(Command& command) noexcept;
+  void note(const Pending& pending, const CommandReply& reply, std::int64_t ends_ns);
+  void drop_lease(std::size_t index);
+  void release_later(const Lease& lease);
+
+  SpscQueue<Command>& commands_;
+  SpscQueue<CommandReply>& replies_;
+  ZoneTable* zones_ = nullptr;
+  std::vector<Pending> pending_;
+  std::vector<Held> held_;
+  std::vector<Lease> to_release_;
+  std::uint64_t last_id_ = 0;
+};
+
+}  // namespace zonepack

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "runtime/odometry/pose_filter.hpp"
+#include "runtime/serve/protocol_generated.h"
+
+namespace zonepack {
+
+// The clocks at one instant.
+struct ClockReading {
+  std::int64_t monotonic_ns = 0;
+  std::int64_t realtime_ns = 0;
+  std::int64_t offset_ns = 0;  // realtime minus the run's clock
+
+  std::int64_t run_ns() const noexcept { return realtime_ns - offset_ns; }
+};
+
+// A pose that another program gave, on the run's clock; nothing for what is not a pose: a number
+// that is not finite, a variance that is not positive, correlations over 1. The filter takes the
+// standard deviations; correlations are checked and not used.
+std::optional<PoseCorrection> correction_of(const wire::GivePose& given,
+                                            const ClockReading& now) noexcept;
+
+}  // namespace zonepack

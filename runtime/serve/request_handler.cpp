@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/serve/request_handler.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "platform/clock.hpp"
+#include "runtime/serve/external_pose.hpp"
+
+namespace zonepack {
+
+using wire::RequestBody;
+
+RequestHandler::RequestHandler(const ServerPorts& ports, std::uint32_t requests_per_s,
+                               ServerCounters& counters)
+    : ports_(ports),
+      requests_per_s_(requests_per_s),
+      counters_(counters),
+      desk_(ports.commands, ports.replies) {}
+
+void RequestHandler::refuse(const Call& call, wire::Fault fault, std::string_view text) {
+  MessageBuilder message;
+  call.from.answer(message.fault(call.id(), fault, text));
+}
+
+void RequestHandler::take(Session& from, LocalSocket::Received& received, Message bytes,
+                          ServedMap& map, std::int64_t monotonic_ns) {
+  ++counters_.requests;
+  const auto request = check_request(bytes);
+  if (received.cut || !request || (*request)->id() == 0) {
+    ++counters_.malformed;
+    MessageBuilder message;
+    from.answer(message.fault(request ? (*request)->id() : 0, wire::Fault::Malformed));
+    // Who has not said hello does not speak this protocol.
+    if (!from.greeted) from.drop();
+    return;
+  }
+  const Call call{from, **request, received, map, monotonic_ns};
+  if (call.request.body_type() == RequestBody::Hello) return greet(call);
+  if (!from.greeted) return refuse(call, wire::Fault::Hello);
+  if (call.request.map_serial() != 0 && call.request.map_serial() != map.serial) {
+    return refuse(call, wire::Fault::StaleMap);
+  }
+  handle(call);
+}
+
+void RequestHandler::greet(const Call& call) {
+  if (call.request.body_as_Hello()->version() != kProtocolVersion) {
+    refuse(call, wire::Fault::Version,
+           "this zoned speaks version " + std::to_string(kProtocolVersion));
+    return;
+  }
+  MessageBuilder message;
+  flatbuffers::FlatBufferBuilder& builder = message.builder();
+  std::vector<std::uint8_t> kinds;
+  std::vector<int> descriptors;
+  const auto offer = [&](wire::FdKind kind, int fd) {
+    if (fd < 0) return;
+    kinds.push_back(static_cast<std::uint8_t>(kind));
+    descriptors.push_back(fd);
+  };
+  offer(wire::FdKind::Memory, ports_.memory_fd);
+  offer(wire::FdKind::Lock, ports_.lock_fd);
+  const Catalog& catalog = call.map.catalog;
+  std::uint64_t signatures = 0;
+  for (const CatalogZone& zone : catalog.zones) signatures += zone.signatures;
+  const auto program = builder.CreateString("zoned");
+  const auto lineage = builder.CreateVector(catalog.lineage.data(), catalog.lineage.size());
+  const auto version = builder.CreateVector(catalog.version.data(), catalog.version.size());
+  const auto kind_list =
+      builder.CreateVector(reinterpret_cast<const wire::FdKind*>(kinds.data()), kinds.size());
+  const auto welcome = wire::CreateWelcome(
+      builder, kProtocolVersion, program, lineage, version, call.map.serial,
+      static_cast<std::uint32_t>(catalog.zones.size()), signatures, kind_list,
+      call.from.looking_only, kMostMessageBytes, requests_per_s_, ports_.lease_ns);
+  call.from.greeted = true;
+  call.from.answer(message.reply(call.id(), welcome), descriptors);
+}
+
+void RequestHandler::handle(const Call& call) {
+  if (look(call)) return;
+  if (call.from.looking_only) return refuse(call, wire::Fault::Denied);
+  const wire::Request& request = call.request;
+  switch (request.body_type()) {
+    case RequestBody::GivePose:
+      return take_pose(call);
+    case RequestBody::RouteHint:
+      return hint(call);
+    case RequestBody::Pin:
+      return command_on_zone(call, Command::Kind::kPin, request.body_as_Pin()->zone(),
+                             request.body_as_Pin()->name());
+    case RequestBody::Unpin:
+      return command_on_zone(call, Command::Kind::kUnpin, request.body_as_Unpin()->zone(),
+                             request.body_as_Unpin()->name());
+    case RequestBody::Freeze:
+    case RequestBody::Unfreeze: {
+      Command order;
+      order.kind = request.body_type() == RequestBody::Freeze ? Command::Kind::kFreeze
+                                                              : Command::Kind::kUnfreeze;
+      return command(call, order);
+    }
+    case RequestBody::TakeLease:
+      return command_on_zone(call, Command::Kind::kLease, request.body_as_TakeLease()->zone(),
+                             request.body_as_TakeLease()->name());
+    case RequestBody::Release: {
+      const wire::Lease& lease = *request.body_as_Release()->lease();
+      Command order;
+      order.kind = Command::Kind::kRelease;
+      order.lease = {lease.zone(), lease.generation(), lease.epoch()};
+      return command(call, order);
+    }
+    case RequestBody::Dump:
+      return start_dump(call);
+    default:
+      ++counters_.malformed;
+      return refuse(call, wire::Fault::Malformed, "unknown request");
+  }
+}
+
+// What anyone may ask; false when it is none of these.
+bool RequestHandler::look(const Call& call) {
+  const wire::Request& request = call.request;
+  MessageBuilder message;
+  switch (request.body_type()) {
+    case RequestBody::AskStatus:
+      call.from.answer(
+          answer_status(message, call.id(), call.map, ports_.status.load(), counters_));
+      return true;
+    case RequestBody::AskZones:
+      call.from.answer(
+          answer_zones(message, call.id(), call.map, request.body_as_AskZones()->first()));
+      return true;
+    case RequestBody::AskZone: {
+      const wire::AskZone& ask = *request.body_as_AskZone();
+      const ZoneId zone = call.map.find(ask.zone(), ask.name());
+      call.from.answer(zone == kNoZone ? no_such_zone(message, call.id(), ask.zone(), ask.name())
+                                       : answer_zone(message, call.id(), call.map, zone));
+      return true;
+    }
+    case RequestBody::AskChanges:
+      call.from.answer(
+          answer_changes(message, call.id(), call.map, request.body_as_AskChanges()->since()));
+      return true;
+    case RequestBody::AskPose:
+      call.from.answer(answer_pose(message, call.id(), ports_.status.load()));
+      return true;
+    case RequestBody::AskNearest:
+      call.from.answer(answer_nearest(message, call.id(), call.map, *request.body_as_AskNearest()));
+      return true;
+    case RequestBody::AskSignatures:
+      tell_signatures(call);
+      return true;
+    case RequestBody::Subscribe:
+      subscribe(call);
+      return true;
+    case RequestBody::AskRoute:
+      plan(call);
+      return true;
+    default:
+      return false;
+  }
+}
+
+void RequestHandler::tell_signatures(const Call& call) {
+  const wire::AskSignatures& ask = *call.request.body_as_AskSignatures();
+  const ZoneId zone = call.map.find(ask.zone(), ask.name());
+  MessageBuilder message;
+  call.from.answer(zone == kNoZone
+                       ? no_such_zone(message, call.id(), ask.zone(), ask.name())
+                       : answer_signatures(message, call.id(), call.map, zone, ask.first()));
+}
+
+void RequestHandler::subscribe(const Call& call) {
+  const wire::Subscribe& ask = *call.request.body_as_Subscribe();
+  if (!(ask.pose_hz() >= 0 && ask.pose_hz() <= kMostPoseHz)) {
+    return refuse(call, wire::Fault::Malformed, "expected pose_hz 0 to 100");
+  }
+  call.from.wants_events = ask.events();
+  call.from.pose_period_ns =
+      ask.pose_hz() > 0 ? static_cast<std::int64_t>(1e9 / static_cast<double>(ask.pose_hz())) : 0;
+  call.from.next_pose_ns = call.monotonic_ns;
+  MessageBuilder message;
+  call.from.answer(message.reply(call.id(), wire::CreateDone(message.builder())));
+}
+
+void RequestHandler::plan(const Call& call) {
+  const wire::AskRoute& ask = *call.request.body_as_AskRoute();
+  if (ask.hint() && call.from.looking_only) return refuse(call, wire::Fault::Denied);
+  const LiveStatus status = ports_.status.load();
+  // Without a zone to start from: the robot's own, from where it stands.
+  const bool from_robot = ask.from() == kNoZone && ask.from_name() == nullptr;
+  const ZoneId from = from_robot ? status.state.zone : call.map.find(ask.from(), ask.from_name());
+  const ZoneId to = call.map.find(ask.to(), ask.to_name());
+  MessageBuilder message;
+  if (from_robot && from >= call.map.catalog.zones.size()) {
+    return refuse(call, wire::Fault::NotFound, "the robot is in no zone; name one to start from");
+  }
+  if (from == kNoZone) {
+    return call.from.answer(no_such_zone(message, call.id(), ask.from(), ask.from_name()));
+  }
+  if (to == kNoZone) {
+    return call.from.answer(no_such_zone(message, call.id(), ask.to(), ask.to_name()));
+  }
+  std::optional<Point2> start;
+  if (from_robot && status.state.pose.valid) {
+    start = Point2{status.state.pose.T_map_base.x_m, status.state.pose.T_map_base.y_m};
+  }
+  const Result<Route> route = plan_route(call.map.graph, from, to, start);
+  if (!route) {
+    const bool none = route.error().code == ErrorCode::kNotFound;
+    return refuse(call, none ? wire::Fault::NotFound : wire::Fault::TooMany,
+                  none ? "no way leads there" : "too far for one plan; plan to a zone on the way");
+  }
+  if (ask.hint()) {
+    Command order;
+    order.kind = Command::Kind::kRouteHint;
+    order.route_length =
+        static_cast<std::uint32_t>(std::min(route->zones.size(), Command::kMostRoute));
+    std::copy_n(route->zones.begin(), order.route_length, order.route.begin());
+    // The answer is the route; the command's own reply tells nobody.
+    if (const auto posted = desk_.post(0, 0, order, call.monotonic_ns); !posted) {
+      return refuse(call, fault_of(posted.error()));
+    }
+  }
+  call.from.answer(answer_route(message, call.id(), call.map, *route, ask.hint()));
+}
+
+void RequestHandler::command(const Call& call, Command command) {
+  const auto posted = desk_.post(call.from.key, call.id(), command, call.monotonic_ns);
+  if (!posted) refuse(call, fault_of(posted.error()));
+}
+
+void RequestHandler::command_on_zone(const Call& call, Command::Kind kind, std::uint32_t zone,
+                                     const flatbuffers::String* name) {
+  Command order;
+  order.kind = kind;
+  order.zone = call.map.find(zone, name);
+  if (order.zone == kNoZone) {
+    MessageBuilder message;
+    return call.from.answer(no_such_zone(message, call.id(), zone, name));
+  }
+  command(call, order);
+}
+
+void RequestHandler::hint(const Call& call) {
+  static_assert(kMostRouteHint == Command::kMostRoute);
+  const auto* const zones = call.request.body_as_RouteHint()->zones();
+  Command order;
+  order.kind = Command::Kind::kRouteHint;
+  order.route_length = zones == nullptr ? 0 : zones->size();
+  if (order.route_length > Command::kMostRoute) {
+    return refuse(call, wire::Fault::Malformed, "expected at most 64 zones");
+  }
+  for (std::uint32_t i = 0; i < order.route_length; ++i) {
+    order.route[i] = zones->Get(i);
+    if (order.route[i] < call.map.catalog.zones.size()) continue;
+    MessageBuilder message;
+    return call.from.answer(no_such_zone(message, call.id(), order.route[i], nullptr));
+  }
+  command(call, order);
+}
+
+void RequestHandler::take_pose(const Call& call) {
+  const ClockReading now{call.monotonic_ns, realtime_ns(), ports_.status.load().clock_offset_ns};
+  const auto correction = correction_of(*call.request.body_as_GivePose(), now);
+  if (!correction) return refuse(call, wire::Fault::Malformed, "not a pose with a covariance");
+  if (!ports_.poses.push(*correction)) return refuse(call, wire::Fault::Busy);
+  MessageBuilder message;
+  call.from.answer(message.reply(call.id(), wire::CreateDone(message.builder())));
+}
+
+void RequestHandler::start_dump(const Call& call) {
+  if (!ports_.dump) return refuse(call, wire::Fault::Unavailable, "nothing is recorded");
+  if (call.received.descriptor_count != 1) {
+    return refuse(call, wire::Fault::Malformed, "expected one descriptor to write to");
+  }
+  if (dump_.running()) return refuse(call, wire::Fault::Busy, "another recording is being written");
+  // Shared, because work is copied on its way into the thread.
+  auto file = std::make_shared<Descriptor>(std::move(call.received.descriptors[0]));
+  const auto started = dump_.start([file, write = ports_.dump] { return write(file->get()); });
+  if (!started) return refuse(call, wire::Fault::Failed, "no thread could be started");
+  dump_client_ = call.from.key;
+  dump_request_ = call.id();
+}
+
+std::optional<RequestHandler::Dump> RequestHandler::poll_dump() {
+  auto result = dump_.poll();
+  if (!result) return std::nullopt;
+  return Dump{dump_client_, dump_request_, std::move(*result)};
+}
+
+void RequestHandler::tell(Session& to, const Dump& dump) {
+  MessageBuilder message;
+  if (!dump.bytes) {
+    return to.answer(
+        message.fault(dump.request_id, wire::Fault::Failed, to_string(dump.bytes.error().code)));
+  }
+  to.answer(message.reply(dump.request_id, wire::CreateDumped(message.builder(), *dump.bytes)));
+}
+
+void RequestHandler::tell(Session& to, const CommandDesk::Settled& settled) const {
+  MessageBuilder message;
+  const std::uint64_t id = settled.request_id;
+  if (settled.reply.error.code != ErrorCode::kOk) {
+    return to.answer(message.fault(id, fault_of(settled.reply.error)));
+  }
+  if (settled.kind == Command::Kind::kLease) {
+    const Lease& granted = settled.reply.lease;
+    const wire::Lease lease(granted.zone, granted.generation, granted.epoch);
+    return to.answer(
+        message.reply(id, wire::CreateGranted(message.builder(), &lease, ports_.lease_ns)));
+  }
+  to.answer(message.reply(id, wire::CreateDone(message.builder())));
+}
+
+}  // namespace zonepack

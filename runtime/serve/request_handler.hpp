@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "platform/local_socket.hpp"
+#include "runtime/serve/answers.hpp"
+#include "runtime/serve/command_desk.hpp"
+#include "runtime/serve/served_map.hpp"
+#include "runtime/serve/server_ports.hpp"
+#include "runtime/serve/session.hpp"
+#include "runtime/serve/slow_job.hpp"
+
+namespace zonepack {
+
+// Does what a request asks, or hands it on: to the control thread, whose answer settle() passes
+// back, or to the thread that writes a recording.
+//
+// Threads: one, the server's.
+class RequestHandler {
+ public:
+  RequestHandler(const ServerPorts& ports, std::uint32_t requests_per_s, ServerCounters& counters);
+
+  // A request as it came, not yet checked.
+  void take(Session& from, LocalSocket::Received& received, Message bytes, ServedMap& map,
+            std::int64_t monotonic_ns);
+
+  CommandDesk& desk() noexcept { return desk_; }
+
+  // Tells `from` what became of its command.
+  void tell(Session& to, const CommandDesk::Settled& settled) const;
+
+  // The recording that was asked for is written.
+  struct Dump {
+    CommandDesk::ClientKey client = 0;
+    std::uint64_t request_id = 0;
+    Result<std::uint64_t> bytes;
+  };
+  std::optional<Dump> poll_dump();
+  static void tell(Session& to, const Dump& dump);
+
+  bool busy() const noexcept { return desk_.pending() > 0 || dump_.running(); }
+
+ private:
+  // What stays the same while one request is handled.
+  struct Call {
+    Session& from;
+    const wire::Request& request;
+    LocalSocket::Received& received;
+    ServedMap& map;
+    std::int64_t monotonic_ns;
+    std::uint64_t id() const noexcept { return request.id(); }
+  };
+
+  void greet(const Call& call);
+  void handle(const Call& call);
+  bool look(const Call& call);
+  void subscribe(const Call& call);
+  void tell_signatures(const Call& call);
+  void plan(const Call& call);
+  void command(const Call& call, Command command);
+  void command_on_zone(const Call& call, Command::Kind kind, std::uint32_t zone,
+                       const flatbuffers::String* name);
+  void hint(const Call& call);
+  void take_pose(const Call& call);
+  void start_dump(const Call& call);
+  static void refuse(const Call& call, wire::Fault fault, std::string_view text = {});
+
+  const ServerPorts& ports_;
+  const std::uint32_t requests_per_s_;
+  ServerCounters& counters_;
+  CommandDesk desk_;
+  std::uint64_t dump_request_ = 0;
+  CommandDesk::ClientKey dump_client_ = 0;
+  SlowJob dump_;
+};
+
+}  // namespace zonepack

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "runtime/map/catalog.hpp"
+#include "runtime/serve/messages.hpp"
+#include "runtime/serve/node_store.hpp"
+#include "runtime/serve/zone_table.hpp"
+#include "runtime/zones/zone_graph.hpp"
+
+namespace zonepack {
+
+// The map that questions are answered from. Catalog and graph are those of the run and outlive
+// this.
+struct ServedMap {
+  const Catalog& catalog;
+  const ZoneGraph& graph;
+  std::uint32_t serial = 1;  // one more with every change of map; never 0
+  ZoneTable zones;
+  std::optional<NodeStore> nodes;  // nothing when the manifest cannot be read any more
+
+  // By number or, where one is given, by name; kNoZone for what is not there.
+  ZoneId find(std::uint32_t zone, const flatbuffers::String* name) const noexcept {
+    if (name != nullptr) return catalog.find(view_of(name));
+    return zone < catalog.zones.size() ? zone : kNoZone;
+  }
+};
+
+}  // namespace zonepack

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "platform/local_socket.hpp"
+#include "platform/poller.hpp"
+#include "runtime/serve/answers.hpp"
+#include "runtime/serve/request_handler.hpp"
+#include "runtime/serve/serve_settings.hpp"
+#include "runtime/serve/served_map.hpp"
+#include "runtime/serve/server_ports.hpp"
+#include "runtime/serve/session.hpp"
+
+namespace zonepack {
+
+// Serves other programs over local sockets (PROTOCOL.md). The control thread leaves a status and
+// events for it and takes commands and poses when it likes: nothing that a client does or leaves
+// undone holds it up.
+//
+// Bounds: settings.clients at once; accepting kMostAccepts and, for each client, kMostRequests a
+// turn; what Session, CommandDesk and NodeStore state. Memory: below 100 KiB, and for each client
+// that does not read up to Session::kMostWaiting here and kKernelBytes and one message in the
+// kernel. Tables that grow with the map are charged with it (table_bytes).
+// Threads: all calls by one, but stop() by any. Does not throw, but may run out of memory.
+class Server {
+ public:
+  static constexpr int kTurn_ms = 10;          // how late an event, a pose or a reply is at most,
+  static constexpr int kTurnWhenAsked_ms = 2;  // and while a command is under way
+  static constexpr std::size_t kMostAccepts = 16;
+  static constexpr std::size_t kMostRequests = 16;
+
+  // Starts to listen. On failure null, and `fault` says why in a complete message: which file, and
+  // what to do. `pinned`: zones pinned from the start.
+  static std::unique_ptr<Server> open(const ServeSettings& settings, const ServerPorts& ports,
+                                      const Catalog& catalog, const ZoneGraph& graph,
+                                      std::span<const ZoneId> pinned, std::string& fault);
+  ~Server();
+
+  // One turn: waits for something to do, at most timeout_ms, and does it.
+  void turn(int timeout_ms);
+
+  // Turns until stop().
+  void run();
+  void stop() noexcept;
+
+  // A map that the run was offered too. It takes the place of the one in use when the event
+  // map_changed comes, and is forgotten at map_refused. Clients are told; leases are over. Which
+  // map is served, map() tells: the other one is not referred to any more.
+  void offer_map(const Catalog& catalog, const ZoneGraph& graph, std::span<const ZoneId> pinned);
+
+  // The same at once: for an event that was lost.
+  void change_map();
+
+  // A command of the daemon itself, through the queue that is the server's. False: no room now.
+  bool post(const Command& command);
+
+  const ServerCounters& counters() const noexcept { return counters_; }
+  const ServedMap& map() const noexcept { return *map_; }
+
+  // What a map adds: the tables of zones and of where signatures stand.
+  static ByteCount table_bytes(std::size_t zones, std::uint64_t signatures) noexcept {
+    return ZoneTable::table_bytes(zones) + NodeStore::table_bytes(zones, signatures);
+  }
+
+ private:
+  struct Listener {
+    LocalListener socket;
+    bool looking_only = false;
+    std::int64_t paused_until_ns = 0;  // 0: accepting
+  };
+
+  Server(const ServeSettings& settings, const ServerPorts& ports, Poller poller);
+  bool add_listener(const std::string& path, const std::string& mode, bool looking_only,
+                    std::string& fault);
+  void tell_subscribers();
+  void take_events();
+  void settle();
+  void accept(std::size_t listener);
+  void pause_or_resume(Listener& listener, std::size_t token);
+  void receive(Session& session);
+  void tell_poses();
+  void tidy();
+  Session* session_of(std::uint64_t key) noexcept;
+
+  const ServeSettings settings_;
+  const ServerPorts ports_;
+  Poller poller_;
+  std::vector<Listener> listeners_;
+  std::vector<std::unique_ptr<Session>> sessions_;  // null: a free place
+  std::unique_ptr<ServedMap> map_;
+  std::unique_ptr<ServedMap> offered_;
+  ServerCounters counters_;
+  RequestHandler handler_;
+  std::vector<Event> events_;          // of this turn
+  std::vector<std::uint64_t> buffer_;  // a request on its way
+  std::uint64_t last_key_ = 0;
+  std::uint64_t lost_events_ = 0;  // as of the last status
+  std::int64_t now_ns_ = 0;        // CLOCK_MONOTONIC, of this turn
+  std::int64_t started_ns_ = 0;
+  std::atomic<bool> stop_{false};
+};
+
+}  // namespace zonepack

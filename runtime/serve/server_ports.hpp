@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "platform/base/result.hpp"
+#include "platform/seqlock.hpp"
+#include "platform/spsc_queue.hpp"
+#include "runtime/command.hpp"
+#include "runtime/event.hpp"
+#include "runtime/live/live_status.hpp"
+#include "runtime/odometry/pose_filter.hpp"
+#include "runtime/serve/zone_table.hpp"
+
+namespace zonepack {
+
+// What joins the server to the run: values that the control thread leaves for it, and queues with
+// room or without, so that neither waits for the other. All of it outlives the server, which is the
+// only one to pop `events` and `replies` and to push to `commands` and `poses`.
+struct ServerPorts {
+  const Seqlock<LiveStatus>& status;
+  SpscQueue<Event>& events;
+  SpscQueue<Command>& commands;
+  SpscQueue<CommandReply>& replies;
+  SpscQueue<PoseCorrection>& poses;
+
+  // What clients may map and hold, sent with the welcome; -1: there is none.
+  int memory_fd = -1;  // open for reading only
+  int lock_fd = -1;    // a share of the memory's lock
+
+  std::int64_t lease_ns = 0;  // as Residency ends leases
+
+  // Asked when events were lost: what can be read now. Any thread.
+  ResidentGeneration resident_generation{};
+
+  // Writes the recording of the last minutes to a descriptor and returns its bytes. May take long;
+  // called in a thread of its own. Empty: there is no recording.
+  std::function<Result<std::uint64_t>(int fd)> dump{};
+};
+
+}  // namespace zonepack

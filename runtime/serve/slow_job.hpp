@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "platform/realtime.hpp"
+
+namespace zonepack {
+
+// One piece of work at a time that may take long, in a thread of its own, so that the server need
+// not wait for a disk. Threads: start() and poll() by one. The destructor waits for the work.
+class SlowJob {
+ public:
+  using Work = std::function<Result<std::uint64_t>()>;
+
+  // kBusy while another runs; kIo when there is no thread to be had.
+  Result<void> start(Work work);
+
+  // The result, once.
+  std::optional<Result<std::uint64_t>> poll();
+
+  bool running() const noexcept { return thread_.joinable(); }
+
+ private:
+  std::optional<Result<std::uint64_t>> result_;
+  std::atomic<bool> done_{false};
+  Thread thread_;
+};
+
+}  // namespace zonepack

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/serve/server.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/unit/serve/fake_run.hpp"
+
+namespace zonepack {
+namespace {
+
+using testing_support::Client;
+using testing_support::FakeRun;
+using testing_support::Meanwhile;
+using testing_support::Serving;
+using testing_support::soon;
+using wire::Fault;
+
+class Served : public testing::Test {
+ protected:
+  FakeRun run;
+
+  // A control thread that answers every command with `answer`.
+  template <typename Answer>
+  auto control(Answer answer) {
+    return [this, answer] {
+      Command command;
+      while (run.commands.pop(command)) {
+        CommandReply reply = answer(command);
+        reply.id = command.id;
+        run.replies.push(reply);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    };
+  }
+};
+
+TEST_F(Served, WelcomesAClientWithItsMapAndDescriptors) {
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+  run.ports.memory_fd = ends[0];
+  run.catalog.lineage[0] = 7;
+  ASSERT_TRUE(run.open());
+  const Serving serving(run);
+  Client client(run.settings.socket);
+  ASSERT_TRUE(client.connected());
+  const wire::Welcome& welcome = client.connection().welcome();
+  EXPECT_EQ(welcome.version(), kProtocolVersion);
+  EXPECT_EQ(welcome.zones(), 3u);
+  EXPECT_EQ(welcome.signatures(), 30u);
+  EXPECT_EQ(welcome.lineage()->Get(0), 7);
+  EXPECT_EQ(welcome.lease_ns(), run.ports.lease_ns);
+  const int memory = client.connection().descriptor(wire::FdKind::Memory);
+  struct stat mine, theirs;
+  ASSERT_EQ(::fstat(memory, &theirs), 0);
+  ASSERT_EQ(::fstat(ends[0], &mine), 0);
+  EXPECT_EQ(mine.st_ino, theirs.st_ino);
+  EXPECT_EQ(client.connection().descriptor(wire::FdKind::Lock), -1);
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+TEST_F(Served, HelloComesFirstAndInAVersionThatIsSpoken) {
+  ASSERT_TRUE(run.open());
+  const Serving serving(run);
+  auto socket = LocalSocket::connect(run.settings.socket);
+  ASSERT_TRUE(socket.ok());
+  alignas(8) std::byte buffer[4096];
+  const auto fault_of_reply_to = [&](std::span<const std::byte> request) {
+    EXPECT_TRUE(socket->send(request).ok());
+    EXPECT_TRUE(socket->wait(false, 10'000));
+    const auto got = socket->receive(buffer);
+    const auto reply = check_reply(std::span(buffer, got->bytes));
+    return (*reply)->fault();
+  };
+  MessageBuilder early;
+  EXPECT_EQ(fault_of_reply_to(early.request(1, wire::CreateAskStatus(early.builder()))),
+            Fault::Hello);
+  MessageBuilder hello;
+  EXPECT_EQ(fault_of_reply_to(hello.request(2, wire::CreateHello(hello.builder(), 99))),
+            Fault::Version);
+}
+
+TEST_F(Served, KnowsZonesByTheEventsOfTheRun) {
+  ASSERT_TRUE(run.open());
+  run.happen(EventKind::kZoneWanted, 0);
+  run.load(0, 3);
+  run.happen(EventKind::kLoadStarted, 1);
+  const Serving serving(run);
+  Client client(run.settings.socket);
+  const auto& reply = client.ask([](auto& b) { return wire::CreateAskZones(b); });
+  const auto& zones = *reply.body_as_Zones()->zones();
+  ASSERT_EQ(zones.size(), 3u);
+  EXPECT_EQ(zones.Get(0)->name()->str(), "a");
+  EXPECT_EQ(zones.Get(0)->state(), wire::ZoneState::Resident);
+  EXPECT_EQ(zones.Get(0)->generation(), 3u);
+  EXPECT_TRUE(zones.Get(0)->wanted());
+  EXPECT_EQ(zones.Get(1)->state(), wire::ZoneState::Filling);
+  EXPECT_EQ(zones.Get(2)->state(), wire::ZoneState::Absent);
+  EXPECT_EQ(client.status().zones_resident(), 1u);
+  EXPECT_EQ(client.status().zones_filling(), 1u);
+}
+
+TEST_F(Served, TellsWhatChangedSinceAPointThatItNamed) {
+  ASSERT_TRUE(run.open());
+  run.load(0);
+  run.load(1);
+  const Serving serving(run);
+  Client client(run.settings.socket);
+  const auto changes_since = [&](std::uint64_t since) -> const wire::Changes& {
+    return *client.ask([&](auto& b) { return wire::CreateAskChanges(b, since); }).body_as_Changes();
+  };
+  const std::uint64_t after_two = changes_since(0).counter();
+  EXPECT_EQ(after_two, 2u);
+  run.happen(EventKind::kEvicted, 0);
+  run.load(2);
+  ASSERT_TRUE(soon([&] { return changes_since(0).counter() == 4; }));
+  const wire::Changes& changes = changes_since(after_two);
+  ASSERT_EQ(changes.changes()->size(), 2u);
+  EXPECT_EQ(changes.changes()->Get(0)->zone(), 0u);
+  EXPECT_FALSE(changes.changes()->Get(0)->resident());
+  EXPECT_EQ(changes.changes()->Get(1)->zone(), 2u);
+  EXPECT_TRUE(changes.changes()->Get(1)->resident());
+  EXPECT_FALSE(changes.more());
+  EXPECT_EQ(changes_since(4).changes()->size(), 0u);
+  EXPECT_TRUE(changes_since(1000).restarted()) << "a point that never was";
+}
+
+TEST_F(Served, TakesCommandsToTheControlThreadAndItsReplyBack) {
+  ASSERT_TRUE(run.open());
+  const Meanwhile controlling(control([](const Command& command) {
+    CommandReply reply;
+    if (command.zone == 2) reply.error = {ErrorCode::kNoRoom, 0};
+    return reply;
+  }));
+  const Serving serving(run);
+  Client client(run.settings.socket);
+  EXPECT_EQ(client.pin("b").fault(), Fault::None);
+  EXPECT_EQ(client.pin("c").fault(), Fault::NoRoom);
+  EXPECT_EQ(client.status().zones_pinned(), 1u);
+  const wire::Reply& unknown = client.pin("x");
+  EXPECT_EQ(unknown.fault(), Fault::NotFound);
+  EXPECT_EQ(unknown.text()->str(), "no zone \"x\" in this map");
+}
+
+TEST_F(Served, ReleasesTheLeasesOfAClientThatIsGone) {
+  ASSERT_TRUE(run.open());
+  std::atomic<int> released{0};
+  const Meanwhile controlling(control([&](const Command& command) {
+    CommandReply reply;
+    if (command.kind == Command::Kind::kLease) reply.lease = {command.zone, 5, 1};
+    if (command.kind == Command::Kind::kRelease && command.lease.generation == 5) ++released;
+    return reply;
+  }));
+  const Serving serving(run);
+  Client watcher(run.settings.socket);
+  {
+    Client reader(run.settings.socket);
+    const wire::Reply& granted = reader.lease(1);
+    ASSERT_NE(granted.body_as_Granted(), nullptr);
+    EXPECT_EQ(granted.body_as_Granted()->lease()->generation(), 5u);
+    EXPECT_EQ(granted.body_as_Granted()->lasts_ns(), run.ports.lease_ns);
+    EXPECT_EQ(watcher.status().leases(), 1u);
+    const wire::Lease of_another(2, 5, 1);
+    EXPECT_EQ(reader.ask([&](auto& b) { return wire::CreateRelease(b, &of_another); }).fault(),
+              Fault::NotFound);
+    EXPECT_EQ(released.load(), 0);
+  }
+  EXPECT_TRUE(soon([&] { return released.load() == 1; }));
+  EXPECT_EQ(watcher.status().leases(), 0u);
+}
+
+TEST_F(Served, SaysBusyWhenTheControlThreadTakesNoCommands) {
+  ASSERT_TRUE(run.open());
+  const Serving serving(run);
+  auto socket = Client(run.settings.socket);
+  Command command;
+  while (run.commands.push(command)) {
+  }
+  EXPECT_EQ(socket.pin("a").fault(), Fault::Busy);
+}
+
+TEST_F(Served, HandsOverPosesOnTheRunsClock) {
+  LiveStatus status;
+  status.clock_offset_ns = 1'000;
+  run.status.store(status);
+  ASSERT_TRUE(run.open());
+  const Serving serving(run);
+  Client client(run.settings.socket);
+  const auto give = [&](double x, double variance) {
+    return client
+        .ask([&](auto& b) {
+          const wire::Pose pose(x, 2, 7);
+          const wire::Covariance covariance(variance, 0, 0, 0.25, 0, 0.01);
+          return wire::CreateGivePose(b, wire::Clock::Realtime, 5'000, &pose, &covariance);
+        })
+        .fault();
+  };
+  EXPECT_EQ(give(1, 0.04), Fault::None);
+  PoseCorrection correction;
+  ASSERT_TRUE(run.poses.pop(correction));
+  EXPECT_EQ(correction.stamp_ns, 4'000);
+  EXPECT_EQ(correction.T_map_base.x_m, 1);
+  EXPECT_NEAR(correction.T_map_base.yaw_rad, 7 - 2 * M_PI, 1e-12);
+  EXPECT_DOUBLE_EQ(correction.sigma_x_m, 0.2);
+  EXPECT_DOUBLE_EQ(correction.sigma_y_m, 0.5);
+  EXPECT_EQ(give(std::numeric_limits<double>::quiet_NaN(), 0.04), Fault::Malformed);
+  EXPECT_EQ(give(1, 0), Fault::Malformed);
+  EXPECT_FALSE(run.poses.pop(correction));
+}
+
+TEST_F(Served, PlansThroughZonesThatAreNotLoadedAndHintsWhenAsked) {
+  LiveStatus status;
+  status.state.zone = 0;
+  status.state.pose.valid = true;
+  status.state.pose.T_map_base = {1, 2, 0};
+  run.status.store(status);
+  ASSERT_TRUE(run.open());
+  const Serving serving(run);
+  Client client(run.settings.socket);
+  // From where the robot stands: 3 m to the first door, 4 m to the second.
+  const auto& reply =
+      client.ask([](auto& b) { return wire::CreateAskRoute(b, kNoZone, 0, 2, 0, true); });
+  ASSERT_NE(reply.body_as_Route(), nullptr);
+  EXPECT_EQ(reply.body_as_Route()->length(), 7);
+  EXPECT_EQ(reply.body_as_Route()->names()->Get(1)->str(), "b");
+  EXPECT_TRUE(reply.body_as_Route()->hinted());
+  Command command;
+  ASSERT_TRUE(run.commands.pop(command));
+  EXPECT_EQ(command.kind, Command::Kind::kRouteHint);
+  EXPECT_EQ(command.route_length, 3u);
+  EXPECT_EQ(command.route[2], 2u);
+}
+
+TEST_F(Served, WritesARecordingToTheDescriptorThatCameWithTheRequest) {
+  run.ports.dump = [](int fd) -> Result<std::uint64_t> {
+    return static_cast<std::uint64_t>(::write(fd, "frames", 6));
+  };
+  ASSERT_TRUE(run.open());
+  const Serving serving(run);
+  Client client(run.settings.socket);
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+  const int to[] = {ends[1]};
+  const auto dump = [](auto& b) { return wire::CreateDump(b); };
+  const wire::Reply& reply = client.ask(dump, to);
+  ASSERT_NE(reply.body_as_Dumped(), nullptr);
+  EXPECT_EQ(reply.body_as_Dumped()->bytes(), 6u);
+  char text[7] = {};
+  EXPECT_EQ(::read(ends[0], text, 6), 6);
+  EXPECT_STREQ(text, "frames");
+  EXPECT_EQ(client.ask(dump).fault(), Fault::Malformed) << "without a descriptor";
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+TEST_F(Served, TheLookingSocketIsForLookingOnly) {
+  run.settings.looking_socket = run.folder / "look";
+  ASSERT_TRUE(run.open());
+  struct stat status;
+  ASSERT_EQ(::stat(run.settings.socket.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0660u);
+  ASSERT_EQ(::stat(run.settings.looking_socket.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0666u);
+  const Serving serving(run);
+  Client client(run.settings.looking_socket);
+  EXPECT_TRUE(client.connection().welcome().looking_only());
+  EXPECT_EQ(client.status().zones(), 3u);
+  EXPECT_EQ(client.pin("a").fault(), Fault::Denied);
+  EXPECT_EQ(client.lease(0).fault(), Fault::Denied);
+  EXPECT_EQ(client.ask([](auto& b) { return wire::CreateAskRoute(b, 0, 0, 2, 0, true); }).fault(),
+            Fault::Denied);
+}
+
+TEST_F(Served, AnotherMapIsToldAndOldZoneNumbersAreRefused) {
+  ASSERT_TRUE(run.open());
+  Catalog other = testing_support::three_room_catalog();
+  other.zones[0].name = "A";
+  run.server->offer_map(other, run.graph, {});
+  const Serving serving(run);
+  std::uint32_t told = 0;
+  Client client(run.settings.socket);
+  client.connection().on_notice([&](const wire::Reply& notice) {
+    if (const auto* change = notice.body_as_MapChanged()) told = change->map_serial();
+  });
+  const std::uint32_t serial = client.connection().welcome().map_serial();
+  const auto ask = [&](std::uint32_t map) -> const wire::Reply& {
+    return client.ask([](auto& b) { return wire::CreateAskZone(b, 0); }, {}, map);
+  };
+  EXPECT_EQ(ask(serial).body_as_Zone()->name()->str(), "a");
+  run.happen(EventKind::kMapChanged, kNoZone);
+  run.load(0, 9);  // of the new map
+  ASSERT_TRUE(soon([&] { return ask(0).body_as_Zone()->name()->str() == "A"; }));
+  EXPECT_EQ(ask(0).body_as_Zone()->generation(), 9u);
+  EXPECT_EQ(told, serial + 1);
+  EXPECT_EQ(ask(serial).fault(), Fault::StaleMap);
+  EXPECT_EQ(ask(told).fault(), Fault::None);
+}
+
+TEST_F(Served, OpeningSaysWhatStandsInTheWay) {
+  ASSERT_TRUE(run.open());
+  std::string fault;
+  EXPECT_EQ(Server::open(run.settings, run.ports, run.catalog, run.graph, {}, fault), nullptr);
+  EXPECT_NE(fault.find(run.settings.socket), std::string::npos);
+  EXPECT_NE(fault.find("another zoned listens there"), std::string::npos);
+  ServeSettings settings;
+  settings.socket = run.folder / "t";
+  settings.mode = "0x1";
+  EXPECT_EQ(Server::open(settings, run.ports, run.catalog, run.graph, {}, fault), nullptr);
+  EXPECT_NE(fault.find("expected octal digits"), std::string::npos);
+  settings.socket = run.folder / "no/such/folder";
+  settings.mode = "0660";
+  EXPECT_EQ(Server::open(settings, run.ports, run.catalog, run.graph, {}, fault), nullptr);
+  EXPECT_NE(fault.find("No such file or directory"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace zonepack
