@@ -50,3 +50,12 @@ add_test(NAME system/dbc_other_reader
          COMMAND /usr/bin/python3 ${CMAKE_CURRENT_LIST_DIR}/dbc/other_reader_test.py
                  $<TARGET_FILE:decode_dbc> ${dbc_files})
 set_tests_properties(system/dbc_other_reader PROPERTIES SKIP_RETURN_CODE 77)
+
+# zonectl against a run that is made up.
+if(TARGET zonectl)
+  add_executable(made_up_run ${CMAKE_CURRENT_LIST_DIR}/serve/made_up_run.cpp)
+  zonepack_settings(made_up_run)
+  target_link_libraries(made_up_run PRIVATE zonepack_test_support zonepack_runtime)
+  add_test(NAME system/zonectl
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/serve/zonectl_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
+endif()

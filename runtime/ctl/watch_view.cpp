@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/ctl/watch_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+
+#include "runtime/ctl/figures.hpp"
+#include "runtime/event.hpp"
+
+namespace zonepack {
+namespace {
+
+constexpr double kTimeline_s = 120;
+constexpr std::size_t kMostEvents = 8;
+constexpr const char* kRed = "\x1b[31m";
+constexpr const char* kGreen = "\x1b[32m";
+constexpr const char* kYellow = "\x1b[33m";
+constexpr const char* kDim = "\x1b[2m";
+constexpr const char* kBold = "\x1b[1m";
+
+// One line that never grows wider than the terminal. A code point counts as one column.
+class Line {
+ public:
+  Line(int columns, bool color) : columns_(columns), color_(color) {}
+
+  Line& add(std::string_view words, const char* style = nullptr) {
+    const bool styled = color_ && style != nullptr && width_ < columns_;
+    if (styled) text_ += style;
+    for (std::size_t i = 0; i < words.size();) {
+      std::size_t end = i + 1;
+      while (end < words.size() && (static_cast<unsigned char>(words[end]) & 0xC0) == 0x80) ++end;
+      if (width_ < columns_) {
+        // A name may hold anything; the terminal obeys none of it.
+        const bool printable = static_cast<unsigned char>(words[i]) >= 0x20 && words[i] != 0x7F;
+        text_ += printable ? std::string(words.substr(i, end - i)) : "?";
+        ++width_;
+      }
+      i = end;
+    }
+    if (styled) text_ += "\x1b[0m";
+    return *this;
+  }
+  Line& pad_to(int column) {
+    while (width_ < std::min(column, columns_)) add(" ");
+    return *this;
+  }
+  int left() const { return columns_ - width_; }
+  std::string done() const { return text_ + "\n"; }
+
+ private:
+  const int columns_;
+  const bool color_;
+  int width_ = 0;
+  std::string text_;
+};
+
+std::string format(const char* pattern, auto... values) {
+  char text[160];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
+
+std::string pose_words(const wire::PoseReport* pose) {
+  if (pose == nullptr || !pose->valid()) return "no pose";
+  const double sigma = std::sqrt(std::max(pose->covariance()->xx(), pose->covariance()->yy()));
+  return format("x %.2f  y %.2f m  %.0f°  sigma %.2f m%s", pose->pose()->x(), pose->pose()->y(),
+                pose->pose()->yaw() * (180 / M_PI), sigma, pose->trusted() ? "" : "  not trusted");
+}
+
+std::string timing_words(const wire::Timing* t) {
+  if (t == nullptr || t->count() == 0) return "not measured yet";
+  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) / 1e3; };
+  return format("p50 %.1f  p99 %.1f  p99.99 %.1f  max %.1f us", us(t->p50()), us(t->p99()),
+                us(t->p9999()), us(t->max()));
+}
+
+const char* mark_of(const WatchView::Zone& zone) {
+  switch (zone.state) {
+    case wire::ZoneState::Resident:
+      return "#";
+    case wire::ZoneState::Filling:
+      return "+";
+    case wire::ZoneState::Cancelling:
+      return "-";
+    default:
+      return zone.wanted ? "?" : ".";
+  }
+}
+
+const char* style_of(const WatchView::Zone& zone) {
+  switch (zone.state) {
+    case wire::ZoneState::Resident:
+      return kGreen;
+    case wire::ZoneState::Filling:
+    case wire::ZoneState::Cancelling:
+      return kYellow;
+    default:
+      return zone.wanted ? kRed : kDim;
+  }
+}
+
+std::string budget_line(const wire::Status& status, int columns, bool color) {
+  Line line(columns, color);
+  const std::string words =
+      " " + short_bytes(status.charged_bytes()) + " of " + short_bytes(status.budget_bytes());
+  line.add("budget   ", kBold);
+  const int cells = std::clamp(line.left() - static_cast<int>(words.size()) - 2, 4, 60);
+  const double share = status.budget_bytes() == 0 ? 0
+                                                  : static_cast<double>(status.charged_bytes()) /
+                                                        static_cast<double>(status.budget_bytes());
+  const int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * cells);
+  line.add("[").add(std::string(static_cast<std::size_t>(full), '='), kGreen);
+  line.add(std::string(static_cast<std::size_t>(cells - full), ' ')).add("]").add(words);
+  return line.done();
+}
+
+}  // namespace
+
+std::string short_bytes(std::uint64_t bytes) {
+  if (bytes < 1024) return format("%d B", static_cast<int>(bytes));
+  const double kib = static_cast<double>(bytes) / 1024;
+  return kib < 1024 ? format("%.0f KiB", kib) : format("%.2f MiB", kib / 1024);
+}
+
+std::string event_line(const wire::Event& event) {
+  std::string line = format("%12.3f s  ", static_cast<double>(event.t_ns()) / 1e9);
+  // A zoned that knows more kinds of events than we do says so by a number only.
+  line += event.kind() <= wire::EventKind::End ? to_string(static_cast<EventKind>(event.kind()))
+                                               : format("event %d", static_cast<int>(event.kind()));
+  if (event.zone_name() != nullptr) line += " " + event.zone_name()->str();
+  if (event.reason() != nullptr) line += ": " + event.reason()->str();
+  return line;
+}
+
+void WatchView::add_status(const wire::Status& status, double at_s) {
+  timeline_.push_back({at_s, std::string(view_of(status.zone())), status.zone_resident()});
+  while (timeline_.front().at_s < at_s - kTimeline_s) timeline_.pop_front();
+}
+
+void WatchView::add_event(const wire::Event& event) {
+  using wire::EventKind;
+  if (event.kind() == EventKind::ZoneWanted || event.kind() == EventKind::ZoneUnwanted) return;
+  events_.push_back(event_line(event));
+  if (events_.size() > kMostEvents) events_.pop_front();
+}
+
+std::string WatchView::picture(const wire::Status& status, Size size, bool color) const {
+  std::vector<std::string> lines;
+  const auto begin = [&](const char* title) {
+    Line line(size.columns, color);
+    line.add(title, kBold).pad_to(9);
+    return line;
+  };
+  const std::string zone(view_of(status.zone()));
+  lines.push_back(begin("zoned")
+                      .add(zone.empty() ? "in no zone" : "in " + zone, kBold)
+                      .add("  " + pose_words(status.pose()))
+                      .done());
+  for (const std::string& complaint : complaints(status)) {
+    lines.push_back(begin("").add(complaint, kRed).done());
+  }
+  lines.push_back(budget_line(status, size.columns, color));
+  lines.push_back(
+      begin("loaded")
+          .add(format("%u of %u zones, %llu signatures  +%llu -%llu  not kept up %llu",
+                      status.zones_resident(), status.zones(),
+                      static_cast<unsigned long long>(status.resident_signatures()),
+                      static_cast<unsigned long long>(status.signatures_loaded_total()),
+                      static_cast<unsigned long long>(status.signatures_unloaded_total()),
+                      static_cast<unsigned long long>(status.not_keeping_up())))
+          .done());
+  lines.push_back(begin("cycle").add(timing_words(status.cycle())).done());
+  lines.push_back(begin("wake-up")
+                      .add(timing_words(status.wakeup()))
+                      .add(format("  missed %llu",
+                                  static_cast<unsigned long long>(status.missed_deadlines_total())))
+                      .done());
+
+  // The last two minutes, a column for each moment: names where a zone begins, '!' while the
+  // robot's own zone is not in memory.
+  Line timeline = begin("2 min");
+  const int cells = timeline.left();
+  std::string before;
+  std::string label;
+  auto sample = timeline_.begin();
+  for (int cell = 0; cell < cells && !timeline_.empty(); ++cell) {
+    const double at_s = timeline_.back().at_s - kTimeline_s * (cells - 1 - cell) / cells;
+    while (std::next(sample) != timeline_.end() && std::next(sample)->at_s <= at_s) ++sample;
+    if (sample->at_s > at_s) {
+      timeline.add(" ");
+      continue;
+    }
+    if (sample->zone != before) label = before = sample->zone;
+    const bool missing = !sample->resident && !sample->zone.empty();
+    const std::string shown = label.empty() ? (missing ? "!" : "-") : label.substr(0, 1);
+    if (!label.empty()) label.erase(0, 1);
+    timeline.add(shown, missing ? kRed : kGreen);
+  }
+  lines.push_back(timeline.done());
+
+  // Zones in their order by name, so that each keeps its place.
+  std::size_t widest = 0;
+  for (const Zone& each : zones_) widest = std::max(widest, each.name.size());
+  const int cell = static_cast<int>(std::min<std::size_t>(widest, 24)) + 4;
+  const int across = std::max((size.columns - 9) / cell, 1);
+  const int events = static_cast<int>(std::min(events_.size(), kMostEvents));
+  const int room = std::max(size.rows - static_cast<int>(lines.size()) - events - 2, 1);
+  int shown_rows = 0;
+  std::size_t next = 0;
+  for (; next < zones_.size() && shown_rows < room; ++shown_rows) {
+    Line row = begin(shown_rows == 0 ? "zones" : "");
+    for (int i = 0; i < across && next < zones_.size(); ++i, ++next) {
+      const Zone& each = zones_[next];
+      row.add(mark_of(each), style_of(each)).add(each.name.substr(0, 24), style_of(each));
+      if (each.name == zone) row.add("<", kBold);
+      if (each.pinned) row.add("P");
+      if (each.leases > 0) row.add("L");
+      row.pad_to(9 + cell * (i + 1));
+    }
+    lines.push_back(row.done());
+  }
+  for (const std::string& event : events_) lines.push_back(begin("").add(event, kDim).done());
+  const std::string more =
+      next < zones_.size() ? format("%zu zones more;  ", zones_.size() - next) : "";
+  lines.push_back(
+      begin("")
+          .add(more + "q ends  # in memory  + loading  ? wanted  < robot  P pinned  L leased", kDim)
+          .done());
+  std::string text;
+  for (std::size_t i = 0; i < lines.size() && i < static_cast<std::size_t>(size.rows); ++i) {
+    text += lines[i];
+  }
+  // The last row has no line end, so that the screen does not scroll.
+  if (!text.empty() && lines.size() >= static_cast<std::size_t>(size.rows)) text.pop_back();
+  return text;
+}
+
+std::string WatchView::line(const wire::Status& status) {
+  const std::string zone(view_of(status.zone()));
+  std::string text = (zone.empty() ? "in no zone" : "in " + zone) + "  " +
+                     pose_words(status.pose()) + "  " + short_bytes(status.charged_bytes()) +
+                     " of " + short_bytes(status.budget_bytes()) +
+                     format("  %u of %u zones", status.zones_resident(), status.zones());
+  for (const std::string& complaint : complaints(status)) {
+    text += "  " + complaint.substr(0, complaint.find(':'));
+  }
+  return text + "\n";
+}
+
+}  // namespace zonepack

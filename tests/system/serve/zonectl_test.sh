@@ -1,0 +1,62 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# usage: zonectl_test.sh BIN: every command of zonectl as a user gives it, against a made-up run.
+set -euo pipefail
+bin=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export ZONED_SOCKET=$work/zoned.sock
+failed=0
+# check NAME EXIT PATTERN COMMAND...: the exit code, and a pattern in what it says.
+check() {
+  local name=$1 code=$2 pattern=$3 got=0
+  shift 3
+  "$@" >"$work/out" 2>&1 || got=$?
+  if [ "$got" != "$code" ] || { [ -n "$pattern" ] && ! grep -qE -e "$pattern" "$work/out"; }; then
+    echo "$name: exit $got, expected $code and /$pattern/:"
+    cat "$work/out"
+    failed=1
+  fi
+}
+zonectl=$bin/zonectl
+
+check 'nobody listens' 1 "$ZONED_SOCKET: no zoned listens there; start zoned run" "$zonectl" status
+check 'no command' 2 'subcommand' "$zonectl"
+check 'no such command' 2 '' "$zonectl" dance
+check 'not a number' 2 'X' "$zonectl" pose here 0 0
+
+coproc run { exec "$bin/made_up_run" "$ZONED_SOCKET"; }
+read -r ready <&"${run[0]}"
+[ "$ready" = ready ]
+
+check 'status' 0 '^NOT KEEPING UP: the robot is in a, ' "$zonectl" status
+check 'status counts' 0 '^not_keeping_up +1$' "$zonectl" status
+check 'status as JSON' 0 '^\{"zone":"a",.*"budget_bytes":8388608,' "$zonectl" status --json -
+"$zonectl" status --json "$work/status.json"
+jq -e '.not_keeping_up == 1 and .zones == 3' "$work/status.json" >/dev/null
+check 'zones' 0 '^b +resident +wanted ' "$zonectl" zones
+check 'metrics' 0 '^zoned_not_keeping_up_total 1$' "$zonectl" metrics
+check 'pin' 0 '' "$zonectl" pin b
+check 'pinned' 0 '^b +resident +wanted pinned ' "$zonectl" zones
+check 'unpin' 0 '' "$zonectl" unpin b
+check 'no room' 1 '^zonectl: no room beside the pins' "$zonectl" pin c
+check 'no such zone' 1 '^zonectl: not found: no zone "x" in this map' "$zonectl" pin x
+check 'freeze' 0 '' "$zonectl" freeze
+check 'unfreeze' 0 '' "$zonectl" unfreeze
+check 'pose' 0 '' "$zonectl" pose -1.5 2 -90 0.2
+check 'route' 0 '^b  door at 8.00 2.00$' "$zonectl" route a c
+check 'route length' 0 '^4.0 m$' "$zonectl" route a c
+check 'route from here' 0 '^7.0 m, handed to preload$' "$zonectl" route . c --hint
+check 'dump' 0 ': 6 bytes$' "$zonectl" dump "$work/recording"
+[ "$(cat "$work/recording")" = frames ]
+check 'dump into nowhere' 1 'cannot be written' "$zonectl" dump "$work/no/folder"
+check 'events' 0 'zone_wanted b$' timeout --preserve-status 1 "$zonectl" events
+check 'watch without a terminal' 0 '^in a  x 1.00  y 2.00 m .* NOT KEEPING UP' timeout --preserve-status 1 "$zonectl" watch
+# In a terminal: pictures until interrupted, and the terminal as it was before.
+TERM=xterm check 'watch' 0 $'\x1b\\[\\?1049h.*zoned.*in a' script -qec "timeout -s INT --preserve-status 1 $zonectl watch" /dev/null
+tr -d '\r' <"$work/out" | tail -c 32 | grep -qF $'\x1b[?1049l' || { echo 'watch: the terminal was left changed'; failed=1; }
+pid=$run_PID
+eval "exec ${run[1]}>&-"
+wait "$pid"
+check 'gone' 1 'no zoned listens there' "$zonectl" metrics
+exit $failed

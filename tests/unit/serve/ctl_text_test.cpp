@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// What zonectl shows of a status: JSON, Prometheus text, and the view of `watch`.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "runtime/ctl/figures.hpp"
+#include "runtime/ctl/watch_view.hpp"
+#include "runtime/serve/answers.hpp"
+#include "tests/unit/serve/fake_run.hpp"
+
+namespace zonepack {
+namespace {
+
+using testing_support::FakeRun;
+
+class CtlText : public testing::Test {
+ protected:
+  FakeRun run;
+  LiveStatus live;
+  ServerCounters counters;
+  MessageBuilder message;
+
+  CtlText() {
+    live.state.pose.valid = live.state.pose.trusted = true;
+    live.state.pose.T_map_base = {1.5, -2, 1};
+    live.state.pose.covariance.xx = 0.04;
+    live.state.zone = 1;
+    live.state.zone_resident = true;
+    live.budget = 8 * kMiB;
+    live.charged = 2 * kMiB;
+    live.cycle = {1000, 3'000, 9'000, 20'000, 40'000, 120'000};
+    live.realtime = live.memory_locked = true;
+    counters.not_keeping_up = 3;
+  }
+
+  const wire::Status& status() {
+    const ServedMap map{run.catalog, run.graph, 1, ZoneTable(3), std::nullopt};
+    message.builder().Clear();
+    const Message bytes = answer_status(message, 1, map, live, counters);
+    return *flatbuffers::GetRoot<wire::Reply>(bytes.data())->body_as_Status();
+  }
+
+  static std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+  }
+};
+
+// The rules that `promtool check metrics` holds text to.
+TEST_F(CtlText, MetricsAreAsPrometheusWantsThem) {
+  const std::regex name("zoned_[a-z0-9_]+");
+  const std::regex sample("([a-z0-9_]+)(\\{[a-z]+=\"[^\"]*\"\\})? (-?[0-9.e+-]+)");
+  const std::regex other_unit("_(ms|us|ns|kib|mib|percent|degrees|minutes)(_|$)");
+  std::string current, type;
+  std::set<std::string> seen;
+  for (const std::string& line : lines_of(metrics_text(status()))) {
+    std::smatch match;
+    if (line.starts_with("# HELP ")) {
+      current = line.substr(7, line.find(' ', 7) - 7);
+      EXPECT_TRUE(std::regex_match(current, name)) << line;
+      EXPECT_TRUE(seen.insert(current).second) << "told twice: " << line;
+      EXPECT_GT(line.size(), 8 + current.size()) << "no help: " << line;
+      type.clear();
+    } else if (line.starts_with("# TYPE ")) {
+      ASSERT_TRUE(type.empty()) << line;
+      type = line.substr(8 + current.size());
+      EXPECT_EQ(line, "# TYPE " + current + " " + type);
+      EXPECT_EQ(type == "counter", current.ends_with("_total")) << line;
+      EXPECT_TRUE(type == "counter" || type == "gauge") << line;
+      EXPECT_FALSE(std::regex_search(current, other_unit)) << line;
+    } else {
+      ASSERT_TRUE(std::regex_match(line, match, sample)) << line;
+      EXPECT_EQ(match[1], current);
+    }
+  }
+  const std::string text = metrics_text(status());
+  EXPECT_NE(text.find("\nzoned_not_keeping_up_total 3\n"), std::string::npos);
+  EXPECT_NE(text.find("\nzoned_budget_bytes 8388608\n"), std::string::npos);
+  EXPECT_NE(text.find("\nzoned_cycle_seconds{percentile=\"99\"} 9e-06\n"), std::string::npos);
+  EXPECT_NE(text.find("\nzoned_zone_info{zone=\"b\"} 1\n"), std::string::npos);
+}
+
+TEST_F(CtlText, JsonHoldsTheSameNumbers) {
+  const auto json = nlohmann::json::parse(status_json(status()));
+  EXPECT_EQ(json["zone"], "b");
+  EXPECT_EQ(json["budget_bytes"], 8 * kMiB);
+  EXPECT_EQ(json["not_keeping_up"], 3);
+  EXPECT_EQ(json["zone_resident"], true);
+  EXPECT_EQ(json["pose"]["y_m"], -2);
+  EXPECT_EQ(json["pose"]["sigma_m"], 0.2);
+  EXPECT_EQ(json["cycle_us"]["p9999"], 40);
+  live.state.pose.valid = false;
+  EXPECT_TRUE(nlohmann::json::parse(status_json(status()))["pose"].is_null());
+}
+
+TEST_F(CtlText, ARobotThatIsAheadOfItsMapIsSaidSoFirst) {
+  EXPECT_TRUE(complaints(status()).empty());
+  live.state.zone_resident = false;
+  live.realtime = false;
+  const auto lines = complaints(status());
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_TRUE(lines[0].starts_with("NOT KEEPING UP: the robot is in b")) << lines[0];
+  EXPECT_NE(WatchView::line(status()).find("NOT KEEPING UP"), std::string::npos);
+}
+
+int columns_of(const std::string& line) {
+  return static_cast<int>(std::ranges::count_if(
+      line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+TEST_F(CtlText, TheViewFitsIntoAnyTerminal) {
+  WatchView view;
+  std::vector<WatchView::Zone> zones;
+  for (int i = 0; i < 300; ++i) {
+    WatchView::Zone zone;
+    zone.name = "corridor-" + std::to_string(i);
+    zone.pinned = zone.wanted = i % 3 == 0;
+    zones.push_back(zone);
+  }
+  view.set_zones(zones);
+  for (int i = 0; i < 700; ++i) view.add_status(status(), 0.2 * i);
+  live.state.zone_resident = false;
+  for (const int columns : {1, 10, 40, 80, 133, 300}) {
+    for (const int rows : {1, 5, 24, 60}) {
+      const auto lines = lines_of(view.picture(status(), {columns, rows}, false));
+      EXPECT_LE(static_cast<int>(lines.size()), rows) << columns;
+      for (const std::string& line : lines) EXPECT_LE(columns_of(line), columns) << line;
+    }
+  }
+}
+
+TEST_F(CtlText, TheViewTellsZonesBudgetTimelineAndNoEscapesWithoutColor) {
+  WatchView view;
+  view.set_zones({{"a", wire::ZoneState::Filling, true, false, 0, 10, 1},
+                  {"b", wire::ZoneState::Resident, true, true, 1, 10, 1},
+                  {"c\x1b[2J", wire::ZoneState::Absent, false, false, 0, 10, 1}});
+  for (int i = 0; i <= 120; ++i) {
+    live.state.zone = i < 60 ? 0 : 1;
+    live.state.zone_resident = i >= 70;
+    view.add_status(status(), i);
+  }
+  const std::string text = view.picture(status(), {69, 24}, false);
+  EXPECT_NE(text.find("in b"), std::string::npos);
+  EXPECT_NE(text.find("2.00 MiB of 8.00 MiB"), std::string::npos);
+  EXPECT_NE(text.find("+a"), std::string::npos);
+  EXPECT_NE(text.find("#b<PL"), std::string::npos);
+  // 60 columns of 2 s, at 2 to 120 s: 29 in a, not in memory; b from 60 s, missing until 70 s.
+  const std::string timeline = "a" + std::string(28, '!') + "b!!!!" + std::string(26, '-');
+  EXPECT_NE(text.find(timeline), std::string::npos) << text;
+  EXPECT_EQ(text.find('\x1b'), std::string::npos) << "a name is not obeyed";
+  EXPECT_NE(view.picture(status(), {69, 24}, true).find("\x1b[32m"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace zonepack
