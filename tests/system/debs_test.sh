@@ -25,7 +25,7 @@ check() {  # PACKAGE FILE...: has these files, and depends on the owners of what
     { echo "${deb[0]}: '<' owns a library that is needed, '>' is in Depends"; exit 1; }
 }
 
-check zonepack-runtime usr/bin/zoned usr/share/zonepack/config/agilex.yaml
+check zonepack-runtime usr/bin/zoned usr/lib/systemd/system/zoned.service usr/share/zonepack/config/agilex.yaml
 check zonepack-tools usr/bin/zonepack
 check zonepack-dev 'usr/lib/[a-z0-9-]+/libzonepack_runtime.a' 'usr/lib/[a-z0-9-]+/cmake/zonepack/zonepackConfig.cmake' \
   usr/include/zonepack/platform/base/result.hpp

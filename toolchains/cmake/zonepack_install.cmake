@@ -42,7 +42,8 @@ if(TARGET zonepack)
   add_dependencies(installed zonepack)
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/zonepack/config
-        COMPONENT runtime)
+        COMPONENT runtime PATTERN zoned.service EXCLUDE)
+install(FILES ${PROJECT_SOURCE_DIR}/config/zoned.service DESTINATION lib/systemd/system COMPONENT runtime)
 install(FILES ${PROJECT_SOURCE_DIR}/runtime/pack_format/FORMAT.md OPTIONAL
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT dev)
 

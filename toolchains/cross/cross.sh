@@ -18,6 +18,20 @@ do_cross() {  # ARCH
   make_packages
 }
 
+# The part of `toolchains/run test`: what takes long is left to `cross` and `system` for each architecture.
+test_cross() {
+  local units=(platform pack_format memory zones odometry runtime)
+  cross_build arm64 installed "${units[@]/#/test_}"
+  stage "tests: arm64 units of the robot under qemu-user"
+  ctest --preset arm64 -j "$(nproc)" -R "^($(IFS='|' && echo "${units[*]}"))/"
+  make_packages
+  set_flavour arm64
+  make_guest
+  stage "system tests: on the virtual robot, arm64"
+  run_guest_tests
+  cross_build armhf zoned
+}
+
 make_packages() {  # of $arch, built
   stage "packages: Debian $arch"
   toolchains/cross/packages.sh "$arch"

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+# Sourced by the tests of this folder: POSIX sh, run as root on the virtual robot.
+#
+# A test is one file NAME_test.sh: a sentence in its comment, exit status 0 when it holds, and says in its last line
+# of output what it found. It may need, in a line "# boot: OPTION...", one of toolchains/robot/boot.sh's options;
+# tests with the same options share a boot, in order of their names, each in a new folder. There are: zoned and
+# can-utils, ip, gpiod's tools and busybox in PATH; /payload/data (tests/data without databases), /payload/map (the
+# sample map), /payload/events.jsonl (what the host decided in the sample run).
+set -eu
+data=/payload/data
+run=$data/scenario1_loop
+config=/usr/share/zonepack/config/agilex.yaml
+
+fail() { echo "$*"; exit 1; }
+
+# Waits until a command holds, at most 10 s.
+wait_for() {
+  tries=0
+  until "$@"; do
+    tries=$((tries + 1))
+    [ $tries -le 200 ] || fail "not within 10 s: $*"
+    sleep 0.05
+  done
+}
+
+# A virtual CAN bus that takes classic and FD frames.
+vcan_up() {  # NAME
+  ip link add "$1" type vcan
+  ip link set "$1" mtu 72
+  ip link set "$1" up
+}
+
+# Whether a program receives all frames of a bus.
+listening() { grep -q "^ *$1 " /proc/net/can/rcvlist_all; }
+
+# The arguments of the sample run, as tests/system/same_decisions_test.sh gives them.
+replay_sample() {  # ARGUMENT...
+  zoned replay --config "$config" --map /payload/map --can "$run/can0.log" --corrections "$run/corrections.txt" \
+    --truth "$run/base_groundtruth.txt" --max-signatures 50 "$@" >/dev/null
+}
+
+# Runs a command in a control group of its own: in_cgroup NAME COMMAND...
+in_cgroup() {
+  sh -c 'echo $$ >"/sys/fs/cgroup/$1/cgroup.procs"; shift; exec "$@"' in_cgroup "$@"
+}
+
+# A chip of simulated lines. Sets chip (its name) and lines: $lines/sim_gpio3/value tells what line 3 is driven to,
+# "pull-up" or "pull-down" written to $lines/sim_gpio3/pull drives it from outside.
+gpio_sim() {  # LABEL COUNT
+  sim=/sys/kernel/config/gpio-sim/$1
+  mkdir -p "$sim/bank0"
+  echo "$2" >"$sim/bank0/num_lines"
+  echo "$1" >"$sim/bank0/label"
+  echo 1 >"$sim/live"
+  chip=$(cat "$sim/bank0/chip_name")
+  lines=/sys/devices/platform/$(cat "$sim/dev_name")/$chip
+}
+
+# Ends the machine at once, as a power cut does: what only this kernel's memory held is lost. The host switches it on
+# again with the same disk at /data, and this test begins anew; "# boot: disk" is needed.
+cut_power() {
+  echo POWER-CUT >/dev/console
+  sleep 600
+  fail "the power was not cut"
+}
+
+# Sends a hundred frames from can0 to can1, two controllers on one bus that are up, and compares.
+send_hundred() {  # what stands between id and data in candump's logs: "#", or "##1" for FD with a fast data phase
+  candump -L can1 >got &
+  wait_for listening can1
+  for i in $(seq 100 199); do
+    cansend can0 "$i$1$i$i$i$i" || fail "frame $i was not sent"
+    echo "$i${1%1}$i$i$i$i" >>sent
+  done
+  arrived() { [ "$(wc -l <got)" = 100 ]; }
+  wait_for arrived
+  cut -d' ' -f3 got | sed 's/##./##/' | cmp - sent || fail "the frames differ"
+}

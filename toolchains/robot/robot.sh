@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+# Sourced by toolchains/run: the virtual robot, a QEMU machine with Debian's kernel and our package.
+
+set_flavour() {  # arm64|armhf|rt-arm64: sets arch, flavour (Debian's name of the kernel)
+  case $1 in
+    arm64 | rt-arm64) flavour=$1; use_arch arm64 ;;
+    armhf) flavour=armmp; use_arch armhf ;;
+    *) echo "unknown robot '$1': expected arm64, armhf or rt-arm64" >&2; return 2 ;;
+  esac
+}
+
+# The guest with our package, and build/robot/FLAVOUR/payload: tests, sample map and run, the host's decisions.
+make_guest() {
+  local out=build/robot/$flavour
+  local payload=$out/payload data=tests/data/scenario1_loop
+  stage "robot: kernel and guest, $flavour"
+  toolchains/robot/kernel.sh "$flavour"
+  rm -rf "$payload"
+  mkdir -p "$payload/tests" "$payload/data"
+  toolchains/robot/guest.sh "$flavour" build/"$arch"/zonepack-runtime_*.deb
+  cp tests/system/guest/*.sh "$payload/tests/"
+  cp -r tests/data/scenario1_loop "$payload/data/"
+  local host=build/ci/bin
+  "$host/zonepack" build --db tests/data/hospital-small.db --zones tests/data/zones.geojson --out "$payload/map" \
+    >/dev/null 2>&1
+  "$host/zoned" replay --config config/agilex.yaml --map "$payload/map" --can $data/can0.log \
+    --corrections $data/corrections.txt --truth $data/base_groundtruth.txt --max-signatures 50 \
+    --events "$payload/events.jsonl" >/dev/null
+}
+
+# Each test once, those with the same boot options together; prints a line for each.
+run_guest_tests() {  # [TEST...], all by default
+  local out=build/robot/$flavour boot failed=0
+  local -a tests=("$@")
+  ((${#tests[@]})) || mapfile -t tests < <(cd tests/system/guest && ls -- *_test.sh | sed 's/\.sh$//')
+  options_of() { sed -n 's/^# boot: //p' "tests/system/guest/$1.sh"; }
+  while read -r boot; do
+    for test in "${tests[@]}"; do
+      if [ "$(options_of "$test")" = "$boot" ]; then echo "$test"; fi
+    done >"$out/payload/group"
+    cp tests/system/guest/start "$out/payload/start"
+    local console=$out/console-${boot// /-}.log status=0
+    # shellcheck disable=SC2086
+    CONSOLE=$console toolchains/robot/boot.sh "$flavour" "$out/payload" $boot </dev/null >/dev/null || status=$?
+    tr -d '\r' <"$console" | sed -n '/^    /p; s/^TEST //p'
+    local ran
+    ran=$(grep -c '^TEST ' "$console" || true)
+    if ((status != 0)); then failed=1; fi
+    if ((ran != $(wc -l <"$out/payload/group"))); then
+      echo "the guest ended early (status $status); the end of $console:"
+      tail -20 "$console"
+      failed=1
+    fi
+  done < <(for test in "${tests[@]}"; do options_of "$test" | grep . || echo; done | sort -u)
+  return $failed
+}
+
+prepare_robot() {  # arm64|armhf|rt-arm64
+  set_flavour "$1" || exit 2
+  ready
+  build ci --target zonepack zoned
+  cross_build "$arch" zoned
+  toolchains/cross/packages.sh "$arch" runtime
+  make_guest
+}
+
+do_system() {  # [arm64|armhf|rt-arm64 [TEST...]]
+  prepare_robot "${1:-arm64}"
+  stage "system tests: on the virtual robot, $flavour"
+  run_guest_tests "${@:2}"
+}
+
+do_robot() {  # [arm64|armhf|rt-arm64]
+  prepare_robot "${1:-arm64}"
+  cp toolchains/robot/shell.sh "build/robot/$flavour/payload/start"
+  stage "robot: switching on"
+  TIMEOUT=none toolchains/robot/boot.sh "$flavour" "build/robot/$flavour/payload"
+}
