@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <utility>
 
 #include "platform/base/result.hpp"
@@ -27,5 +29,8 @@ class Descriptor {
  private:
   int fd_ = -1;
 };
+
+// All of it, in as many pieces as it takes. kIo with errno. Not for the control thread.
+Result<void> write_all(int fd, std::span<const std::byte> bytes) noexcept;
 
 }  // namespace zonepack

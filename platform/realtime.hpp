@@ -40,6 +40,9 @@ class Thread {
   bool realtime_ = false;
 };
 
+// Whether the calling thread runs under SCHED_FIFO.
+bool thread_is_realtime() noexcept;
+
 // Locks every page that the process has now, and no later one, into memory.
 Result<void> lock_memory_now() noexcept;
 void unlock_memory() noexcept;

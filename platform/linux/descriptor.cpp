@@ -26,4 +26,14 @@ Result<Descriptor> Descriptor::share() const noexcept {
   return copy;
 }
 
+Result<void> write_all(int fd, std::span<const std::byte> bytes) noexcept {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return {ErrorCode::kIo, written < 0 ? errno : EIO};
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return {};
+}
+
 }  // namespace zonepack

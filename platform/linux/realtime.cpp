@@ -133,6 +133,12 @@ Result<void> lock_memory_now() noexcept {
   return {};
 }
 
+bool thread_is_realtime() noexcept {
+  int policy = 0;
+  sched_param parameters{};
+  return pthread_getschedparam(pthread_self(), &policy, &parameters) == 0 && policy == SCHED_FIFO;
+}
+
 void unlock_memory() noexcept { munlockall(); }
 
 void use_one_heap() noexcept {

@@ -32,6 +32,7 @@ ControlLoop::ControlLoop(const ControlSettings& settings, const ControlPorts& po
 void ControlLoop::run() noexcept {
   const AllocationWatch watch;
   usage_at_start_ = thread_usage();
+  status_.realtime = thread_is_realtime();
   std::int64_t deadline_ns = monotonic_ns();
   for (std::uint64_t cycle = 0; !stop_.load(std::memory_order_relaxed); ++cycle) {
     if (!ports_.clock.await_inputs(cycle)) break;

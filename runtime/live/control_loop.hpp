@@ -73,6 +73,9 @@ class ControlLoop {
 
   ControlLoop(const ControlSettings& settings, const ControlPorts& ports);
 
+  // Whether memory is locked, for the status; before run().
+  void set_memory_locked(bool locked) noexcept { status_.memory_locked = locked; }
+
   // Until the clock says that the run is over, or stop(). In the control thread.
   void run() noexcept;
   void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }

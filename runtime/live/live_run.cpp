@@ -2,7 +2,6 @@
 #include "runtime/live/live_run.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <iostream>
 #include <string_view>
@@ -16,6 +15,7 @@
 #include "runtime/live/live_loader.hpp"
 #include "runtime/live/log_feed.hpp"
 #include "runtime/live/scribe.hpp"
+#include "runtime/live/service.hpp"
 #include "runtime/memory/shared_map.hpp"
 #include "runtime/replay/run_recorder.hpp"
 #include "runtime/state/state_saver.hpp"
@@ -35,49 +35,19 @@ LiveFigures::Timing timing_of(const Histogram& histogram) {
   return {us(figures.p50), us(figures.p99), us(figures.p9999), us(figures.max)};
 }
 
-// Page-aligned memory of the process itself.
-class MapMemory {
- public:
-  explicit MapMemory(ByteCount bytes)
-      : size_(size_of(bytes)),
-        block_(static_cast<std::byte*>(std::aligned_alloc(4096, size_)), std::free) {
-    ZP_REQUIRE(block_ != nullptr);
-    std::memset(block_.get(), 0, size_);
-  }
-  std::span<std::byte> bytes() noexcept { return {block_.get(), size_}; }
-
- private:
-  static std::size_t size_of(ByteCount bytes) {
-    ZP_REQUIRE(bytes <= PTRDIFF_MAX);
-    return static_cast<std::size_t>(bytes);
-  }
-
-  std::size_t size_;
-  std::unique_ptr<std::byte, decltype(&std::free)> block_;
-};
-
-std::uint32_t zones_with_room_for_another_map(std::size_t zones) {
-  return static_cast<std::uint32_t>(zones + std::max<std::size_t>(zones / 4, 16));
-}
-
-SharedMap laid_out(std::span<std::byte> memory, std::uint32_t zones, std::uint32_t slots) {
-  auto map = SharedMap::lay_out(memory, zones, slots);
-  ZP_REQUIRE(map.ok());
-  return std::move(map).value();
-}
-
 }  // namespace
 
 // In the order in which the parts refer to each other.
 struct LiveRun::Parts {
-  Parts(RunInputs& run_inputs, const DrivenMap& driven, const LiveOptions& run_options)
+  Parts(RunInputs& run_inputs, const DrivenMap& driven, LiveMemory& live_memory,
+        const Notifier& run_notifier, const LiveOptions& run_options)
       : inputs(run_inputs),
         map(driven),
+        zones_memory(live_memory),
+        notifier(run_notifier),
         options(run_options),
         period_ns(map_terms({}, inputs.settings).period_ns),
-        zone_capacity(zones_with_room_for_another_map(map.needs.size())),
-        memory_block(shared_map_bytes(zone_capacity, map.slots)),
-        shared(laid_out(memory_block.bytes(), zone_capacity, map.slots)),
+        shared(live_memory.map()),
         memory(map.needs.size(), map.limits),
         loader(map.catalog, shared),
         notes(kNotes),
@@ -87,24 +57,25 @@ struct LiveRun::Parts {
         teller(map.catalog, recording),
         recorder(map.graph, map.needs, truth, period_ns, map.limits, teller),
         scribe(notes, recorder),
-        events(notes, nullptr, overload) {}
+        events(notes, live_memory.served() ? &service.events : nullptr, overload) {}
 
   bool open_source(std::string& fault);
   bool place_at_start(std::string& fault);
   void restore_state();
   void begin_at(const RecordedStart& start);
   bool open_recorder(std::string& fault);
+  bool open_service(std::string& fault);
   bool start_threads(std::string& fault);
   ControlSettings control_settings() const;
   void control() noexcept;
 
   RunInputs& inputs;
   const DrivenMap& map;
+  LiveMemory& zones_memory;
+  const Notifier& notifier;
   LiveOptions options;
   std::int64_t period_ns;
-  std::uint32_t zone_capacity;
-  MapMemory memory_block;
-  SharedMap shared;
+  SharedMap& shared;
   Residency memory;
   LiveLoader loader;
   SpscQueue<LiveNote> notes;
@@ -117,6 +88,7 @@ struct LiveRun::Parts {
   RunRecorder recorder;
   Scribe scribe;
   OverloadCounters overload;
+  Service service;
   EventFanOut events;
   Seqlock<LiveStatus> status;
   std::unique_ptr<CanLogReader> can_log;
@@ -202,6 +174,22 @@ bool LiveRun::Parts::open_recorder(std::string& fault) {
   return true;
 }
 
+bool LiveRun::Parts::open_service(std::string& fault) {
+  if (!zones_memory.served()) return true;
+  ServeSettings settings = inputs.settings.serve;
+  settings.socket = socket_path(settings);
+  std::function<Result<std::uint64_t>(int)> dump;
+  if (FlightRecorder* const flight = recording.flight()) {
+    dump = [flight](int fd) -> Result<std::uint64_t> {
+      const auto dumped = flight->dump_to(fd);
+      if (!dumped) return dumped.error();
+      return dumped->bytes;
+    };
+  }
+  return service.open(settings, status, zones_memory, map.catalog, map.graph, map.pinned,
+                      map.limits.lease_ns, std::move(dump), fault);
+}
+
 ControlSettings LiveRun::Parts::control_settings() const {
   ControlSettings settings;
   settings.wall_period_ns = std::max<std::int64_t>(
@@ -217,6 +205,7 @@ void LiveRun::Parts::control() noexcept {
   if (inputs.settings.realtime.lock_memory) {
     const auto locked = lock_memory_now();
     lock_error.store(locked ? 0 : static_cast<int>(locked.error().detail));
+    loop->set_memory_locked(locked.ok());
   }
   if (lock_error.load() == 0 || options.allow_degraded) loop->run();
   control_ended.store(true);
@@ -247,11 +236,16 @@ bool LiveRun::Parts::start_threads(std::string& fault) {
   auto started = Thread::start(for_control, options.allow_degraded, [this] { control(); });
   if (!started) return refused("realtime.priority", started.error());
   control_thread = std::move(started).value();
+  if (const auto serving = service.start(notifier, [this] { return loop->cycles(); }); !serving) {
+    return refused("serve", serving.error());
+  }
+  (void)notifier.ready();
   return true;
 }
 
-LiveRun::LiveRun(RunInputs& inputs, const DrivenMap& map, const LiveOptions& options)
-    : parts_(std::make_unique<Parts>(inputs, map, options)) {}
+LiveRun::LiveRun(RunInputs& inputs, const DrivenMap& map, LiveMemory& memory,
+                 const Notifier& notifier, const LiveOptions& options)
+    : parts_(std::make_unique<Parts>(inputs, map, memory, notifier, options)) {}
 
 LiveRun::~LiveRun() {
   if (parts_->loop) parts_->loop->stop();
@@ -272,19 +266,23 @@ bool LiveRun::start(std::string& fault) {
   p.cycle = std::make_unique<Cycle>(cycle_config(p.inputs.settings),
                                     CycleParts{p.map.graph, p.map.needs, p.map.load_s, p.map.pinned,
                                                p.memory, p.loader, p.events, &p.shared});
-  if (!p.place_at_start(fault) || !p.open_recorder(fault)) return false;
+  if (!p.place_at_start(fault) || !p.open_recorder(fault) || !p.open_service(fault)) return false;
+  const bool served = p.zones_memory.served();
   p.in_use.emplace(MapInUse{p.map.catalog, p.map.graph, p.map.needs, p.memory, *p.cycle});
   p.maps.emplace(*p.in_use, p.loader, &p.shared);
-  p.loop = std::make_unique<ControlLoop>(p.control_settings(),
-                                         ControlPorts{.clock = *p.feed,
-                                                      .bus = p.feed->bus(),
-                                                      .maps = *p.maps,
-                                                      .loader = p.loader,
-                                                      .notes = p.events,
-                                                      .overload = p.overload,
-                                                      .logged_corrections = p.feed->corrections(),
-                                                      .recorder = p.recording.tap(),
-                                                      .status = p.status});
+  p.loop = std::make_unique<ControlLoop>(
+      p.control_settings(), ControlPorts{.clock = *p.feed,
+                                         .bus = p.feed->bus(),
+                                         .maps = *p.maps,
+                                         .loader = p.loader,
+                                         .notes = p.events,
+                                         .overload = p.overload,
+                                         .logged_corrections = p.feed->corrections(),
+                                         .poses = served ? &p.service.poses : nullptr,
+                                         .commands = served ? &p.service.commands : nullptr,
+                                         .replies = served ? &p.service.replies : nullptr,
+                                         .recorder = p.recording.tap(),
+                                         .status = p.status});
   return p.start_threads(fault);
 }
 
@@ -297,6 +295,8 @@ void LiveRun::wait() {
 std::optional<RunSummary> LiveRun::finish(std::string& fault) {
   Parts& p = *parts_;
   p.control_thread.join();
+  (void)p.notifier.stopping();
+  p.service.stop();
   if (const int error = p.lock_error.load(); error != 0 && !p.options.allow_degraded) {
     fault = std::string("realtime.lock_memory: ") + std::strerror(error) +
             "; raise LimitMEMLOCK (ulimit -l) above the budget, or go on by --allow-degraded";

@@ -7,7 +7,9 @@
 #include <string>
 
 #include "platform/can_log.hpp"
+#include "platform/notify.hpp"
 #include "runtime/live/can_source.hpp"
+#include "runtime/live/live_memory.hpp"
 #include "runtime/live/live_recorder.hpp"
 #include "runtime/replay/driven_map.hpp"
 #include "runtime/replay/run_inputs.hpp"
@@ -29,8 +31,9 @@ struct LiveOptions {
 // Threads: all calls by the main thread, whose signals must be held (platform/signals.hpp).
 class LiveRun {
  public:
-  // The inputs and the map must outlive this object.
-  LiveRun(RunInputs& inputs, const DrivenMap& map, const LiveOptions& options);
+  // All but the options must outlive this object.
+  LiveRun(RunInputs& inputs, const DrivenMap& map, LiveMemory& memory, const Notifier& notifier,
+          const LiveOptions& options);
   ~LiveRun();
 
   // Reserves and locks memory and starts the threads. False when something is refused; `fault`

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/live/run_command.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "platform/realtime.hpp"
 #include "platform/signals.hpp"
 #include "platform/storage.hpp"
+#include "runtime/live/live_memory.hpp"
 #include "runtime/live/live_run.hpp"
 #include "runtime/pack_format/manifest_file.hpp"
 #include "runtime/replay/log_faults.hpp"
@@ -20,6 +22,10 @@ namespace {
 int fail(const std::string& message, int exit_code = 1) {
   std::cerr << "zoned run: " << message << '\n';
   return exit_code;
+}
+
+std::uint32_t zones_with_room_for_another_map(std::size_t zones) {
+  return static_cast<std::uint32_t>(zones + std::max<std::size_t>(zones / 4, 16));
 }
 
 // The settings' folder, else the one that the service manager made for us.
@@ -56,23 +62,36 @@ int run_live(const RunArguments& arguments) {
   if (arguments.start.kind == StartChoice::Kind::kTruth && arguments.truth.empty()) {
     return fail("--start truth needs --truth FILE", 2);
   }
+  std::vector<HandedFile> handed = take_handed_files();
   hold_signals();
   use_one_heap();
   RunInputs inputs;
   if (const auto fault = read_run_inputs(arguments, inputs)) return fail(*fault);
   std::string fault;
   MapTerms terms = map_terms(arguments, inputs.settings);
-  terms.lease_ns = static_cast<std::int64_t>(inputs.settings.memory.lease_s * 1e9);
+  terms.lease_ns = static_cast<std::int64_t>(inputs.settings.serve.lease_s * 1e9);
   const auto map = DrivenMap::make(inputs.catalog, terms, fault);
   if (!map) return fail(fault);
   if (map->warning) std::cerr << "zoned run: warning: " << *map->warning << '\n';
+
+  auto manager = Notifier::from_environment();
+  if (!manager) std::cerr << "zoned run: NOTIFY_SOCKET: cannot be reached; nobody is told\n";
+  const Notifier notifier = manager ? std::move(*manager) : Notifier();
+  std::string warning;
+  const auto memory = LiveMemory::open(
+      {zones_with_room_for_another_map(map->needs.size()), map->slots,
+       socket_path(inputs.settings.serve),
+       arguments.source.kind == CanSourceChoice::Kind::kSocketCan, &notifier, &handed},
+      fault, warning);
+  if (!memory) return fail(fault);
+  if (!warning.empty()) std::cerr << "zoned run: warning: " << warning << '\n';
 
   LiveOptions options{arguments.source,        arguments.start, arguments.events, {}, {},
                       arguments.allow_degraded};
   options.recorder = {arguments.record, state_folder(inputs.settings),
                       inputs.settings.recorder.bytes};
   if (const auto bad = make_preface(arguments, inputs, terms, options.preface)) return fail(*bad);
-  LiveRun run(inputs, *map, options);
+  LiveRun run(inputs, *map, *memory, notifier, options);
   if (!run.start(fault)) return fail(fault);
   run.wait();
   auto summary = run.finish(fault);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "platform/atomic_file.hpp"
+#include "platform/descriptor.hpp"
 #include "runtime/recording/block.hpp"
 #include "runtime/recording/flight_names.hpp"
 #include "runtime/recording/recording_end.hpp"
@@ -44,15 +45,15 @@ Result<AppendFile> make_file(const std::string& folder, bool named, const std::s
   return named ? AppendFile::create(folder + "/" + name) : AppendFile::create_unnamed(folder);
 }
 
-Result<void> copy(const AppendFile& from, std::uint64_t size, AtomicFile& to) {
+Result<void> copy(const AppendFile& from, std::uint64_t size, int to) {
   std::vector<std::byte> buffer(kCopyBytes);
   for (std::uint64_t at = 0; at < size;) {
     const auto part = std::span(buffer).first(std::min<std::uint64_t>(kCopyBytes, size - at));
     if (const auto read = from.read_at(at, part); !read) return read;
-    if (const auto written = to.write(part); !written) return written;
+    if (const auto written = write_all(to, part); !written) return written;
     at += part.size();
     if (at % AppendFile::kSettleBytes == 0) {
-      drop_page_cache(to.descriptor());
+      drop_page_cache(to);
       from.forget();
     }
   }
@@ -138,6 +139,15 @@ std::deque<FlightRecorder::Part> FlightRecorder::parts() const {
 }
 
 Result<FlightRecorder::Dumped> FlightRecorder::dump(const std::string& path) const {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return file.error();
+  const Result<Dumped> dumped = dump_to(file->descriptor());
+  if (!dumped) return dumped;
+  if (const auto done = file->commit(); !done) return done.error();
+  return dumped;
+}
+
+Result<FlightRecorder::Dumped> FlightRecorder::dump_to(int fd) const {
   Dumped dumped;
   std::deque<Part> kept;
   {
@@ -149,19 +159,16 @@ Result<FlightRecorder::Dumped> FlightRecorder::dump(const std::string& path) con
     return ErrorCode::kNotFound;
   }
   dumped.first_cycle = kept.front().segment->first_cycle;
-  Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return file.error();
-  Result<void> done = copy(preface_, preface_.size(), *file);
+  Result<void> done = copy(preface_, preface_.size(), fd);
   dumped.bytes = preface_.size();
   for (const Part& part : kept) {
-    if (done) done = copy(part.segment->file, part.size, *file);
+    if (done) done = copy(part.segment->file, part.size, fd);
     dumped.bytes += part.size;
   }
   std::vector<std::byte> end;
   seal_block(BlockKind::kEnd, write_end({false, dumped.next_cycle, 0, {}}), end);
   dumped.bytes += end.size();
-  if (done) done = file->write(end);
-  if (done) done = file->commit();
+  if (done) done = write_all(fd, end);
   if (!done) return done.error();
   return dumped;
 }

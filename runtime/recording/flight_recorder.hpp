@@ -47,6 +47,8 @@ class FlightRecorder {
   };
   // Writes what is kept as one recording that appears whole; kNotFound when no cycle is kept.
   Result<Dumped> dump(const std::string& path) const;
+  // The same into an open file, from where it stands.
+  Result<Dumped> dump_to(int fd) const;
 
   // Of all files now.
   ByteCount kept_bytes() const;

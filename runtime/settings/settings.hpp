@@ -35,7 +35,6 @@ struct MemorySettings {
   std::uint64_t max_signatures = 0;  // 0: no such limit
   PayloadChoice payload;
   std::vector<std::string> pinned;  // names of zones that stay
-  double lease_s = 2;               // how long a reader may hold a zone
 };
 
 // How packs are read, and how fast loading is taken to be, for preloading and for simulated time.

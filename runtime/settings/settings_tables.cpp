@@ -22,7 +22,6 @@ const Fields<MemorySettings>& memory_fields() {
        "most signatures resident at once, 0 for no limit; --max-signatures"},
       {"payload", &S::payload, 0, 0, "", "what is loaded of every signature"},
       {"pinned", &S::pinned, 0, 0, "", "names of zones that are never unloaded"},
-      {"lease", &S::lease_s, 0.01, 60, "s", "how long a reader may keep a zone from being evicted"},
   };
   return fields;
 }

@@ -53,10 +53,30 @@ route='select(.event == "zone_entered") | [.cycle, .zone, .x_mm, .y_mm]'
 cmp <(jq -c "$route" live.jsonl) <(jq -c "$route" replay.jsonl) || fail "another route than in the replay"
 [[ $(jq .cycles live.json) == "$(jq .cycles replay.json)" ]] || fail "another number of cycles"
 
-# SIGTERM ends a run in order, with its results.
+# Others look on and have their say while it runs; SIGTERM ends it in order, with its results.
+export ZONED_SOCKET=$work/run/zoned.sock
 how=exec live map 1 --json stopped.json --events stopped.jsonl >out.txt 2>&1 &
 pid=$!
-sleep 1
+for _ in $(seq 200); do
+  "$bin/zonectl" status >/dev/null 2>&1 && break
+  sleep 0.05
+done
+ctl() { "$bin/zonectl" "$@" >ctl.txt 2>&1 || fail "zonectl $*: exit code $?: $(cat ctl.txt)"; }
+ctl status --json status.json
+holds status.json '.budget_bytes > 0 and .cycles > 0'
+ctl zones
+(($(grep -c -E 'resident|absent|filling' ctl.txt) >= 24)) || fail "zones: $(cat ctl.txt)"
+ctl metrics
+grep -q '^zoned_map_ready' ctl.txt || fail "metrics: $(cat ctl.txt)"
+ctl route L1 R52 --hint
+ctl pose -4 -2 90
+for _ in $(seq 100); do  # the first block of a recording is written after a second of cycles
+  "$bin/zonectl" dump flight.rec >ctl.txt 2>&1 && break
+  sleep 0.1
+done
+ctl dump flight.rec
+"$bin/zoned" replay --recording flight.rec >ctl.txt 2>&1 || fail "replay of the dump: $(cat ctl.txt)"
+"$bin/zonectl" pin attic >ctl.txt 2>&1 && fail "pinned a zone that does not exist"
 kill -TERM $pid
 wait $pid || fail "SIGTERM: exit code $?: $(cat out.txt)"
 holds stopped.json '.cycles > 0 and .cycles < 10000'
@@ -68,6 +88,12 @@ rm damaged/C2-*.zpk
 exits 0 live damaged 200 --json damaged.json
 says "zone C2 cannot be loaded"
 holds damaged.json '.budget_violations == 0 and .signatures_loaded > 0'
+
+unset ZONED_SOCKET
+exits 0 live map 1 --check
+says "The run would start"
+exits 1 live map 1 --check --budget 400KiB
+says "REFUSED"
 
 exits 1 live nowhere 1
 says "manifest.zpm"

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform/notify.hpp"
+#include "platform/shared_memory.hpp"
+#include "runtime/memory/arena_memory.hpp"
+#include "runtime/memory/shared_map.hpp"
+#include "runtime/serve/serve_settings.hpp"
+
+namespace zonepack {
+
+// The memory of a live run's zones: shared with the readers of a socket, or the run's alone.
+class LiveMemory {
+ public:
+  struct Choice {
+    std::uint32_t zones = 0, slots = 0;  // to have room for
+    std::string socket;                  // empty: nobody is served
+    bool must_serve = true;  // false: goes on without where the socket's folder is taken
+    const Notifier* manager = nullptr;
+    std::vector<HandedFile>* handed = nullptr;
+  };
+
+  // Null when it cannot be had, with a complete message in `fault`; a message in `warning` when the
+  // run goes on unserved.
+  static std::unique_ptr<LiveMemory> open(const Choice& choice, std::string& fault,
+                                          std::string& warning);
+
+  SharedMap& map() noexcept { return *map_; }
+  bool served() const noexcept { return arena_.has_value(); }
+  // For readers; -1 when not served.
+  int reader_fd() const noexcept { return reader_.get(); }
+  int lock_fd() const noexcept { return lock_.get(); }
+
+ private:
+  LiveMemory() = default;
+  bool share(const Choice& choice, std::string& fault);
+
+  std::optional<ArenaMemory> arena_;
+  std::optional<SharedMemory> own_;
+  std::optional<SharedMap> map_;
+  Descriptor reader_, lock_;
+};
+
+// Where zoned is to be reached: $ZONED_SOCKET, else as the settings say.
+std::string socket_path(const ServeSettings& settings);
+
+}  // namespace zonepack
