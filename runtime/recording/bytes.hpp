@@ -7,6 +7,7 @@
 #include <cstring>
 #include <span>
 
+#include "runtime/odometry/pose.hpp"
 #include "runtime/pack_format/checksum.hpp"
 
 // The numbers of recordings and saved states. Fixed ones are little endian; a varint holds seven
@@ -147,6 +148,17 @@ class ByteReader {
   ByteSpan rest_;
   bool ok_ = true;
 };
+
+// Whether numbers that were read can be where a robot is, and how sure that is.
+inline bool is_place(const Pose2& pose, double sigma_m, double sigma_rad) noexcept {
+  const auto within = [](double value, double least, double most) {
+    return value >= least && value <= most;  // false for nan
+  };
+  constexpr double kFar_m = 1e7, kLargestAngle = 7;
+  return within(pose.x_m, -kFar_m, kFar_m) && within(pose.y_m, -kFar_m, kFar_m) &&
+         within(pose.yaw_rad, -kLargestAngle, kLargestAngle) && within(sigma_m, 0, kFar_m) &&
+         within(sigma_rad, 0, kFar_m);
+}
 
 // a + b and a - b modulo 2^64: deltas of stamps that may be anything.
 constexpr std::int64_t wrapped_add(std::int64_t a, std::int64_t b) noexcept {

@@ -71,6 +71,9 @@ Result<Checkpoint> read_checkpoint(ByteSpan content) {
   checkpoint.sigma_m = in.f64();
   checkpoint.sigma_rad = in.f64();
   checkpoint.zone = in.u32();
+  if (!is_place(checkpoint.T_map_base, checkpoint.sigma_m, checkpoint.sigma_rad)) {
+    return ErrorCode::kBadValue;
+  }
   const std::uint64_t count = in.varint();
   if (count > in.left() / 2) return ErrorCode::kBadStructure;
   for (std::uint64_t i = 0; i < count; ++i) {

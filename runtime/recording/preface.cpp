@@ -115,7 +115,7 @@ bool read_start(ByteReader in, std::optional<RecordedStart>& into) {
     start.sigma_rad = sigma_rad;
   }
   into = start;
-  return in.finished();
+  return in.finished() && is_place(start.T_map_base, sigma_m, sigma_rad);
 }
 
 Result<void> read_field(std::uint8_t kind, ByteSpan bytes, RecordingPreface& preface) {

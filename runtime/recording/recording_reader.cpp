@@ -17,6 +17,20 @@ std::string told(const Error& error) {
   return std::string(to_string(error.code)) + " (" + std::to_string(error.detail) + ")";
 }
 
+// Times from about 36 years before the clock's zero to 146 after it: differences cannot overflow.
+bool is_time(std::int64_t t_ns) noexcept {
+  return t_ns >= -(std::int64_t{1} << 60) && t_ns <= std::int64_t{1} << 62;
+}
+
+bool has_sane_times(const RecordedInput& input) {
+  return is_time(input.now_ns) &&
+         std::ranges::all_of(input.frames,
+                             [](const CanFrame& frame) { return is_time(frame.stamp_ns); }) &&
+         std::ranges::all_of(input.corrections, [](const PoseCorrection& fix) {
+           return is_time(fix.stamp_ns) && is_time(fix.received_ns);
+         });
+}
+
 }  // namespace
 
 std::optional<RecordingReader> RecordingReader::open(const std::string& path, std::string& fault) {
@@ -106,10 +120,15 @@ bool RecordingReader::read_start(std::string& fault) {
     return false;
   }
   preface_ = std::move(preface).value();
+  if (preface_.start && !is_time(preface_.start->now_ns)) {
+    fault = path_ + ": its start is at no time that can be; the file is damaged";
+    return false;
+  }
   content = {};
   for (; kind == static_cast<std::uint8_t>(BlockKind::kCheckpoint); kind = read_block(error)) {
     Result<Checkpoint> checkpoint = read_checkpoint(block_);
-    if (checkpoint) checkpoint_ = std::move(checkpoint).value();
+    if (checkpoint && is_time(checkpoint->now_ns) && is_time(checkpoint->start_ns))
+      checkpoint_ = std::move(checkpoint).value();
   }
   if (kind == static_cast<std::uint8_t>(BlockKind::kCycles)) {
     cycles_ = CycleBlockReader(block_);
@@ -189,7 +208,7 @@ const RecordedInput* RecordingReader::next() {
     if (!next_block()) return nullptr;
   }
   Result<void> read = cycles_.next(input_);
-  if (read && input_.now_ns < last_ns_) read = ErrorCode::kBadValue;
+  if (read && (input_.now_ns < last_ns_ || !has_sane_times(input_))) read = ErrorCode::kBadValue;
   if (!read) {
     stop("cycle " + std::to_string(next_cycle_) + " cannot be read: " + told(read.error()));
     return nullptr;
