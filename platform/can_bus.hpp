@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,7 +11,7 @@ namespace zonepack {
 
 // One frame of a CAN bus, classic or FD, as the kernel or a log hands it over.
 struct CanFrame {
-  std::int64_t stamp_ns = 0;  // CLOCK_REALTIME at reception
+  std::int64_t stamp_ns = 0;  // at reception, on the clock of what it came from
   std::uint32_t id = 0;       // 11 or 29 bits; of an error frame the class bits; no flag bits
   bool extended = false;      // 29-bit id
   bool fd = false;
@@ -19,6 +20,35 @@ struct CanFrame {
   std::uint8_t flags = 0;  // FD only: 1 bit rate switch, 2 error state indicator
   std::uint8_t len = 0;    // bytes of data, at most 8, or 64 with FD
   std::array<std::uint8_t, 64> data{};
+};
+
+struct CanId {
+  std::uint32_t id = 0;  // 11 or 29 bits
+  bool extended = false;
+  friend auto operator<=>(const CanId&, const CanId&) = default;
+};
+
+enum class CanLink : std::uint8_t {
+  kUp,
+  kNoCarrier,  // up, but its controller takes no part: bus-off, or not started
+  kDown,
+  kAbsent,  // no interface of that name
+};
+
+// What a controller's error counters make of it.
+enum class CanBusState : std::uint8_t { kActive, kWarning, kPassive, kOff };
+
+// How a bus stands; the counts are since the start.
+struct CanBusStatus {
+  CanLink link = CanLink::kUp;
+  CanBusState state = CanBusState::kActive;
+  std::uint64_t dropped = 0;    // frames lost in the queue before us
+  std::uint64_t overflows = 0;  // times the controller itself lost frames
+  std::uint64_t error_frames = 0;
+  std::uint64_t bus_offs = 0;
+  std::uint64_t restarts = 0;    // after a bus-off
+  std::uint64_t reconnects = 0;  // the interface vanished, or was another, and was opened again
+  friend bool operator==(const CanBusStatus&, const CanBusStatus&) = default;
 };
 
 // A bus that frames are read from. Real-time: receive() neither blocks, allocates nor throws.
@@ -33,6 +63,9 @@ class CanBus {
 
   // Frames lost before they could be read, since the start.
   virtual std::uint64_t dropped() const noexcept = 0;
+
+  // As far as the last receive() has seen.
+  virtual CanBusStatus status() const noexcept { return {.dropped = dropped()}; }
 };
 
 }  // namespace zonepack

@@ -10,6 +10,10 @@ namespace zonepack {
 std::int64_t monotonic_ns() noexcept;
 std::int64_t realtime_ns() noexcept;
 
+// CLOCK_REALTIME minus CLOCK_MONOTONIC, from readings that nothing came between as far as three
+// tries could tell; the error is below half of what one reading took.
+std::int64_t clock_offset_ns() noexcept;
+
 // CPU time of the calling thread.
 std::int64_t thread_cpu_ns() noexcept;
 

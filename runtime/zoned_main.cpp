@@ -106,8 +106,9 @@ void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
   CLI::App& run = *app.add_subcommand(
       "run", "keeps the map's zones in memory while the robot drives, until SIGTERM");
   add_choices(run, arguments);
-  add_parsed(run, "--can", "SOURCE", "log:FILE[@SPEED]: a CAN log, played on its own time",
-             "log:FILE or log:FILE@SPEED with a speed of 0.001 to 1000000",
+  add_parsed(run, "--can", "SOURCE",
+             "socketcan:IFACE, a CAN bus; or log:FILE[@SPEED], a CAN log played on its own time",
+             "socketcan:IFACE, log:FILE or log:FILE@SPEED with a speed of 0.001 to 1000000",
              [&arguments](const std::string& text) {
                const auto source = zonepack::parse_can_source(text);
                if (source) arguments.source = *source;
@@ -117,7 +118,7 @@ void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
   add_file(run, "--events", arguments.events, "write the event log, one JSON object a line");
   add_file(run, "--json", arguments.json, "write the summary as JSON ('-': standard output)");
   run.add_flag("--allow-degraded", arguments.allow_degraded,
-               "go on without real-time priority or locked memory");
+               "go on without real-time priority, locked memory or a CAN interface");
   add_file(run, "--record", arguments.record, "write every input, for zoned replay --recording");
   run.add_flag("--check", arguments.check,
                "only say what would be refused, and what of this computer could be better");

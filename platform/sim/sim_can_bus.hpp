@@ -6,6 +6,7 @@
 #include <deque>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "platform/can_bus.hpp"
 
@@ -20,12 +21,24 @@ class CanFrameSource {
   virtual std::uint64_t dropped() const noexcept { return 0; }
 };
 
-// A CAN bus in simulated time. A frame arrives at its stamp; one whose stamp lies before its
-// predecessor's arrives together with that one and keeps its stamp. Order is never changed.
+// From at_ns on.
+struct CanLinkChange {
+  std::int64_t at_ns = 0;
+  CanLink link = CanLink::kUp;
+};
+
+// A CAN bus in simulated time, seen through an interface as a kernel gives it. A frame arrives at
+// its stamp; one whose stamp lies before its predecessor's arrives together with that one and keeps
+// its stamp. Order is never changed. What arrives while the link is not up is not received.
 class SimCanBus final : public CanBus {
  public:
   // Without a source, only pushed frames arrive. The source must outlive the bus.
   explicit SimCanBus(CanFrameSource* source = nullptr) noexcept : source_(source) {}
+
+  // Before the first frame. Each allocates.
+  void limit_queue(std::size_t frames);  // as a socket's buffer; else without limit
+  void only(std::vector<CanId> ids) { ids_ = std::move(ids); }  // and error frames; else all
+  void plan(std::vector<CanLinkChange> changes) { plan_ = std::move(changes); }  // in time's order
 
   // Frames stamped up to and including now_ns can be received from here on; time never runs back.
   void advance_to(std::int64_t now_ns) noexcept;
@@ -36,22 +49,36 @@ class SimCanBus final : public CanBus {
   // The next `count` frames are lost and counted instead of being received.
   void lose(std::uint64_t count) noexcept { to_lose_ += count; }
 
-  // When the next frame arrives; nullopt when none will.
+  // From here on, until the plan says otherwise.
+  void set_link(CanLink link) noexcept;
+
+  // When the next frame arrives or arrived; nullopt when none will.
   std::optional<std::int64_t> next_arrival_ns() noexcept;
 
   std::size_t receive(std::span<CanFrame> into) noexcept override;
   std::uint64_t dropped() const noexcept override;
+  CanBusStatus status() const noexcept override;
 
  private:
   bool fill() noexcept;
+  bool take_arrived(CanFrame& frame) noexcept;
+  void follow_plan(std::int64_t until_ns) noexcept;
+  bool lets_through(const CanFrame& frame) const noexcept;
 
   CanFrameSource* source_;
+  std::vector<CanId> ids_;
+  std::vector<CanLinkChange> plan_;
+  std::size_t planned_ = 0;  // changes that came to pass
   std::deque<CanFrame> pushed_;
   std::optional<CanFrame> waiting_;
   std::int64_t arrival_ns_ = INT64_MIN;  // of waiting_; never falls
   std::int64_t now_ns_ = INT64_MIN;
+  std::vector<CanFrame> queue_;  // a ring, with a limit only
+  std::size_t first_ = 0;
+  std::size_t queued_ = 0;
   std::uint64_t to_lose_ = 0;
   std::uint64_t lost_ = 0;
+  CanBusStatus status_;
 };
 
 }  // namespace zonepack

@@ -101,6 +101,7 @@ void ControlLoop::step(std::uint64_t cycle, std::int64_t began_ns) noexcept {
   const std::int64_t ran_ns = monotonic_ns();
   answer();
   status_.can_frames += frames;
+  status_.bus = ports_.bus.status();
   publish(input, offset_ns);
   measure(input, cycle, {began_ns, received_ns, ran_ns, monotonic_ns()});
 }

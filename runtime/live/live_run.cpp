@@ -10,10 +10,11 @@
 #include "platform/realtime.hpp"
 #include "platform/signals.hpp"
 #include "runtime/event_log.hpp"
+#include "runtime/live/bus_teller.hpp"
 #include "runtime/live/control_loop.hpp"
 #include "runtime/live/event_teller.hpp"
 #include "runtime/live/live_loader.hpp"
-#include "runtime/live/log_feed.hpp"
+#include "runtime/live/live_source.hpp"
 #include "runtime/live/scribe.hpp"
 #include "runtime/live/service.hpp"
 #include "runtime/memory/shared_map.hpp"
@@ -91,8 +92,7 @@ struct LiveRun::Parts {
   Service service;
   EventFanOut events;
   Seqlock<LiveStatus> status;
-  std::unique_ptr<CanLogReader> can_log;
-  std::unique_ptr<LogFeed> feed;
+  std::unique_ptr<LiveSource> source;
   std::unique_ptr<Cycle> cycle;
   std::optional<MapInUse> in_use;
   std::optional<MapRun> maps;
@@ -103,31 +103,28 @@ struct LiveRun::Parts {
 };
 
 bool LiveRun::Parts::open_source(std::string& fault) {
-  can_log = std::make_unique<CanLogReader>(options.source.name, inputs.settings.can.interface);
-  if (const auto opened = can_log->open(); !opened) {
-    fault = can_log->explain(opened.error());
-    return false;
-  }
-  feed = std::make_unique<LogFeed>(*can_log, std::move(inputs.corrections), period_ns, notes);
-  if (const auto started = feed->start(); !started) {
-    fault = options.source.name + ": cannot be played: " + to_string(started.error().code);
-    return false;
-  }
-  return true;
+  source = LiveSource::open({.choice = options.source,
+                             .settings = inputs.settings,
+                             .corrections = std::move(inputs.corrections),
+                             .period_ns = period_ns,
+                             .notes = notes,
+                             .allow_degraded = options.allow_degraded},
+                            fault);
+  return source != nullptr;
 }
 
 bool LiveRun::Parts::place_at_start(std::string& fault) {
   std::optional<Pose2> start;
   if (options.start.kind == StartChoice::Kind::kPose) start = options.start.pose;
   if (options.start.kind == StartChoice::Kind::kTruth) {
-    start = first_truth(truth, feed->start_ns());
+    start = first_truth(truth, source->start_ns());
     if (!start) {
       fault = "--start truth: the truth file does not cover the start of the CAN log";
       return false;
     }
   }
   restore_state();
-  if (start) begin_at({feed->start_ns(), *start, {}, {}});
+  if (start) begin_at({source->start_ns(), *start, {}, {}});
   return true;
 }
 
@@ -143,7 +140,7 @@ void LiveRun::Parts::restore_state() {
   next.runs = 1 + (found.state ? found.state->runs : 0);
   if (found.state && options.start.kind == StartChoice::Kind::kFix) {
     const RestoredStart guess = guess_from(*found.state, inputs.settings.pose);
-    begin_at({feed->start_ns(), guess.T_map_base, guess.sigma_m, guess.sigma_rad});
+    begin_at({source->start_ns(), guess.T_map_base, guess.sigma_m, guess.sigma_rad});
   }
   const auto look = [this] {
     const LiveStatus now = status.load();
@@ -194,7 +191,7 @@ ControlSettings LiveRun::Parts::control_settings() const {
   ControlSettings settings;
   settings.wall_period_ns = std::max<std::int64_t>(
       1, static_cast<std::int64_t>(static_cast<double>(period_ns) / options.source.speed + 0.5));
-  settings.may_skip = false;
+  settings.may_skip = source->robot();
   settings.judge_deadlines = options.source.speed == 1;
   settings.most_frames = inputs.settings.cycle.most_frames;
   return settings;
@@ -249,7 +246,7 @@ LiveRun::LiveRun(RunInputs& inputs, const DrivenMap& map, LiveMemory& memory,
 
 LiveRun::~LiveRun() {
   if (parts_->loop) parts_->loop->stop();
-  if (parts_->feed) parts_->feed->stop();
+  if (parts_->source) parts_->source->stop();
 }
 
 bool LiveRun::start(std::string& fault) {
@@ -271,13 +268,13 @@ bool LiveRun::start(std::string& fault) {
   p.in_use.emplace(MapInUse{p.map.catalog, p.map.graph, p.map.needs, p.memory, *p.cycle});
   p.maps.emplace(*p.in_use, p.loader, &p.shared);
   p.loop = std::make_unique<ControlLoop>(
-      p.control_settings(), ControlPorts{.clock = *p.feed,
-                                         .bus = p.feed->bus(),
+      p.control_settings(), ControlPorts{.clock = p.source->clock(),
+                                         .bus = p.source->bus(),
                                          .maps = *p.maps,
                                          .loader = p.loader,
                                          .notes = p.events,
                                          .overload = p.overload,
-                                         .logged_corrections = p.feed->corrections(),
+                                         .logged_corrections = p.source->corrections(),
                                          .poses = served ? &p.service.poses : nullptr,
                                          .commands = served ? &p.service.commands : nullptr,
                                          .replies = served ? &p.service.replies : nullptr,
@@ -287,7 +284,14 @@ bool LiveRun::start(std::string& fault) {
 }
 
 void LiveRun::wait() {
+  if (const std::string warning = parts_->source->warning(); !warning.empty()) {
+    tell("warning: " + warning);
+  }
+  BusTeller teller(parts_->options.source.name);
   while (!parts_->control_ended.load()) {
+    if (parts_->source->robot()) {
+      if (const auto told = teller.tell(parts_->status.load().bus)) tell(*told);
+    }
     if (next_signal(monotonic_ns() + kWatch_ns) == Signal::kStop) parts_->loop->stop();
   }
 }
@@ -304,7 +308,7 @@ std::optional<RunSummary> LiveRun::finish(std::string& fault) {
   }
   p.cycle->finish();
   p.loader.stop();
-  p.feed->stop();
+  p.source->stop();
   p.scribe.stop();
   if (p.state_saver) p.state_saver->stop();
   auto hash = p.log.finish();
@@ -344,7 +348,7 @@ std::optional<RunSummary> LiveRun::finish(std::string& fault) {
 }
 
 const CanLogSummary* LiveRun::log_summary() const {
-  return parts_->can_log ? &parts_->can_log->summary() : nullptr;
+  return parts_->source ? parts_->source->log_summary() : nullptr;
 }
 
 }  // namespace zonepack

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "platform/base/byte_count.hpp"
+#include "platform/can_bus.hpp"
 #include "runtime/cycle.hpp"
 #include "runtime/memory/residency.hpp"
 
@@ -57,6 +58,7 @@ struct LiveStatus {
   PoseFilterCounters filter;
   OverloadCounters overload;
   std::uint64_t can_frames = 0;
+  CanBusStatus bus;
   bool frozen = false;
   bool realtime = false;  // SCHED_FIFO was granted
   bool memory_locked = false;

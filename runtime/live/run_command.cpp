@@ -63,6 +63,10 @@ int run_live(const RunArguments& arguments) {
     return fail("--start truth needs --truth FILE", 2);
   }
   std::vector<HandedFile> handed = take_handed_files();
+  if (arguments.source.kind == CanSourceChoice::Kind::kSocketCan &&
+      (!arguments.corrections.empty() || !arguments.truth.empty())) {
+    return fail("--corrections and --truth are on the time of a log, which socketcan: has not", 2);
+  }
   hold_signals();
   use_one_heap();
   RunInputs inputs;

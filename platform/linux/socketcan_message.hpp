@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <linux/can.h>
+#include <sys/socket.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "platform/can_bus.hpp"
+
+// What a raw CAN socket gives, without a socket. Real-time: no system calls.
+namespace zonepack {
+
+// A frame of `size` bytes as read: classic (CAN_MTU) or FD (CANFD_MTU); nothing for other sizes.
+// Lengths over what the frame can hold are cut. The stamp is left at 0.
+std::optional<CanFrame> frame_from_socket(const canfd_frame& raw, std::size_t size) noexcept;
+
+// What came beside a frame.
+struct SocketCanNotes {
+  std::optional<std::int64_t> software_ns;  // CLOCK_REALTIME at arrival
+  std::optional<std::int64_t> hardware_ns;  // by the controller's own clock
+  std::optional<std::uint32_t> dropped;     // by this socket since it was opened, modulo 2^32
+};
+
+// Reads SO_TIMESTAMPING_NEW and SO_RXQ_OVFL; other and broken parts are skipped.
+SocketCanNotes notes_from_socket(const msghdr& message) noexcept;
+
+// Room for these notes.
+inline constexpr std::size_t kSocketCanNoteBytes = 128;
+
+}  // namespace zonepack

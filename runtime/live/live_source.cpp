@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/live/live_source.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "platform/clock.hpp"
+#include "platform/socketcan.hpp"
+#include "runtime/live/log_feed.hpp"
+#include "runtime/live/robot_clock.hpp"
+#include "runtime/replay/run_inputs.hpp"
+
+namespace zonepack {
+namespace {
+
+class LogSource final : public LiveSource {
+ public:
+  explicit LogSource(LiveSourceTerms& terms)
+      : log_(terms.choice.name, terms.settings.can.interface),
+        feed_(log_, std::move(terms.corrections), terms.period_ns, terms.notes) {}
+
+  bool start(const std::string& name, std::string& fault) {
+    if (const auto opened = log_.open(); !opened) {
+      fault = log_.explain(opened.error());
+      return false;
+    }
+    const auto started = feed_.start();
+    if (!started) fault = name + ": cannot be played: " + to_string(started.error().code);
+    return started.ok();
+  }
+
+  RunClock& clock() noexcept override { return feed_; }
+  CanBus& bus() noexcept override { return feed_.bus(); }
+  SpscQueue<PoseCorrection>& corrections() noexcept override { return feed_.corrections(); }
+  std::int64_t start_ns() const noexcept override { return feed_.start_ns(); }
+  bool robot() const noexcept override { return false; }
+  void stop() noexcept override { feed_.stop(); }
+  const CanLogSummary* log_summary() const noexcept override { return &log_.summary(); }
+
+ private:
+  CanLogReader log_;
+  LogFeed feed_;
+};
+
+class BusSource final : public LiveSource {
+ public:
+  BusSource(std::unique_ptr<SocketCanBus> bus, const SocketCanSettings& settings)
+      : bus_(std::move(bus)), settings_(settings) {}
+
+  RunClock& clock() noexcept override { return clock_; }
+  CanBus& bus() noexcept override { return *bus_; }
+  SpscQueue<PoseCorrection>& corrections() noexcept override { return corrections_; }
+  std::int64_t start_ns() const noexcept override { return start_ns_; }
+  bool robot() const noexcept override { return true; }
+  std::string warning() const override {
+    const std::uint32_t granted = bus_->granted_buffer_bytes();
+    if (granted == 0 || granted / 2 >= settings_.receive_buffer_bytes) return {};
+    return settings_.interface + ": frames may wait in " + std::to_string(granted / 2) +
+           " bytes, less than a second of a full bus takes; sysctl net.core.rmem_max=" +
+           std::to_string(settings_.receive_buffer_bytes) + ", or give zoned CAP_NET_ADMIN";
+  }
+
+ private:
+  std::unique_ptr<SocketCanBus> bus_;
+  SocketCanSettings settings_;
+  RobotClock clock_;
+  SpscQueue<PoseCorrection> corrections_{1};  // stays empty
+  std::int64_t start_ns_ = monotonic_ns();
+};
+
+std::unique_ptr<LiveSource> open_bus(const LiveSourceTerms& terms, std::string& fault) {
+  SocketCanSettings settings;
+  settings.interface = terms.choice.name;
+  settings.ids = odometry_ids(cycle_config(terms.settings).odometry);
+  settings.wait_for_interface = terms.allow_degraded;
+  auto bus = SocketCanBus::open(settings);
+  if (!bus) {
+    fault = explain_socketcan(settings.interface, bus.error());
+    return nullptr;
+  }
+  return std::make_unique<BusSource>(std::move(bus).value(), settings);
+}
+
+}  // namespace
+
+std::vector<CanId> odometry_ids(const WheelOdometrySettings& odometry) {
+  std::vector<CanId> ids;
+  const auto add = [&ids](const CanId& id) {
+    if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+  };
+  for (const CanSignal& signal : signals_of(odometry)) add({signal.id, signal.extended});
+  const CanOpenWatchSettings& canopen = odometry.canopen;
+  for (std::size_t i = 0; i < canopen.node_count; ++i) add({0x700u + canopen.nodes[i], false});
+  if (canopen.sync_timeout_s > 0) add({canopen.sync_id, false});
+  return ids;
+}
+
+std::unique_ptr<LiveSource> LiveSource::open(LiveSourceTerms terms, std::string& fault) {
+  if (terms.choice.kind == CanSourceChoice::Kind::kSocketCan) return open_bus(terms, fault);
+  const std::string name = terms.choice.name;
+  auto log = std::make_unique<LogSource>(terms);
+  if (!log->start(name, fault)) return nullptr;
+  return log;
+}
+
+}  // namespace zonepack
