@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cinttypes>
+#include <cstdio>
+
+#include "platform/base/require.hpp"
 
 namespace zonepack {
 namespace {
@@ -289,6 +293,34 @@ CanLogLine parse_can_log_line(std::string_view line) noexcept {
   while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
   if (line.empty() || indented || line.front() == '#' || line.front() == ';') return {};
   return parse_plain(line);
+}
+
+std::string_view write_can_log_line(const CanFrame& frame, std::string_view interface,
+                                    std::span<char> line) noexcept {
+  ZP_REQUIRE(line.size() >= kCanLogLineRoom + interface.size());
+  const std::int64_t stamp_us = std::max<std::int64_t>(0, frame.stamp_ns / 1000);
+  const bool long_id = frame.extended || frame.error;
+  const int used =
+      std::snprintf(line.data(), line.size(), "(%010" PRId64 ".%06" PRId64 ") %.*s %0*" PRIX32,
+                    stamp_us / 1'000'000, stamp_us % 1'000'000, static_cast<int>(interface.size()),
+                    interface.data(), long_id ? 8 : 3, frame.id | (frame.error ? kErrorFlag : 0u));
+  char* out = line.data() + used;
+  const auto put_digit = [&out](unsigned value) { *out++ = "0123456789ABCDEF"[value & 0xF]; };
+  *out++ = '#';
+  if (frame.fd) {
+    *out++ = '#';
+    put_digit(frame.flags);
+  }
+  if (frame.rtr) {
+    *out++ = 'R';
+    if (frame.len > 0) put_digit(frame.len);
+  } else {
+    for (std::size_t i = 0; i < frame.len; ++i) {
+      put_digit(frame.data[i] >> 4u);
+      put_digit(frame.data[i]);
+    }
+  }
+  return {line.data(), static_cast<std::size_t>(out - line.data())};
 }
 
 }  // namespace zonepack

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "platform/can_bus.hpp"
@@ -31,5 +33,11 @@ struct CanLogLine {
 // or without dots; remote requests (#R, #R8), FD (##<flags>), error frames, raw DLC (_9 .. _F,
 // {9}); screen lines also with -x, -a, -e, -i (binary), -S (swapped bytes) and colours.
 CanLogLine parse_can_log_line(std::string_view line) noexcept;
+
+// The line that candump -l writes of the frame, without its end, into `line`, which must have room
+// for kCanLogLineRoom and the interface's name; returns what was written. Stamps to microseconds.
+inline constexpr std::size_t kCanLogLineRoom = 192;
+std::string_view write_can_log_line(const CanFrame& frame, std::string_view interface,
+                                    std::span<char> line) noexcept;
 
 }  // namespace zonepack

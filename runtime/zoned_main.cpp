@@ -117,6 +117,8 @@ void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
       ->required();
   add_file(run, "--events", arguments.events, "write the event log, one JSON object a line");
   add_file(run, "--json", arguments.json, "write the summary as JSON ('-': standard output)");
+  add_file(run, "--record-can", arguments.record_can,
+           "write the CAN frames that were received, as candump -l does");
   run.add_flag("--allow-degraded", arguments.allow_degraded,
                "go on without real-time priority, locked memory or a CAN interface");
   add_file(run, "--record", arguments.record, "write every input, for zoned replay --recording");

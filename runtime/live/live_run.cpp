@@ -11,6 +11,7 @@
 #include "platform/signals.hpp"
 #include "runtime/event_log.hpp"
 #include "runtime/live/bus_teller.hpp"
+#include "runtime/live/can_recorder.hpp"
 #include "runtime/live/control_loop.hpp"
 #include "runtime/live/event_teller.hpp"
 #include "runtime/live/live_loader.hpp"
@@ -61,6 +62,8 @@ struct LiveRun::Parts {
         events(notes, live_memory.served() ? &service.events : nullptr, overload) {}
 
   bool open_source(std::string& fault);
+  CanBus& bus();
+  std::string unwritten_recording(const Error& error) const;
   bool place_at_start(std::string& fault);
   void restore_state();
   void begin_at(const RecordedStart& start);
@@ -93,6 +96,7 @@ struct LiveRun::Parts {
   EventFanOut events;
   Seqlock<LiveStatus> status;
   std::unique_ptr<LiveSource> source;
+  std::unique_ptr<CanRecorder> can_recorder;
   std::unique_ptr<Cycle> cycle;
   std::optional<MapInUse> in_use;
   std::optional<MapRun> maps;
@@ -110,7 +114,20 @@ bool LiveRun::Parts::open_source(std::string& fault) {
                              .notes = notes,
                              .allow_degraded = options.allow_degraded},
                             fault);
-  return source != nullptr;
+  if (source == nullptr || options.record_can.empty()) return source != nullptr;
+  can_recorder = std::make_unique<CanRecorder>(source->bus(), source->interface(),
+                                               source->clock().offset_ns());
+  scribe.add_task([this] { can_recorder->write(); });
+  const auto opened = can_recorder->open(options.record_can);
+  if (!opened) fault = unwritten_recording(opened.error());
+  return opened.ok();
+}
+
+CanBus& LiveRun::Parts::bus() { return can_recorder ? *can_recorder : source->bus(); }
+
+std::string LiveRun::Parts::unwritten_recording(const Error& error) const {
+  return options.record_can +
+         ": cannot be written: " + std::strerror(static_cast<int>(error.detail));
 }
 
 bool LiveRun::Parts::place_at_start(std::string& fault) {
@@ -269,7 +286,7 @@ bool LiveRun::start(std::string& fault) {
   p.maps.emplace(*p.in_use, p.loader, &p.shared);
   p.loop = std::make_unique<ControlLoop>(
       p.control_settings(), ControlPorts{.clock = p.source->clock(),
-                                         .bus = p.source->bus(),
+                                         .bus = p.bus(),
                                          .maps = *p.maps,
                                          .loader = p.loader,
                                          .notes = p.events,
@@ -311,6 +328,12 @@ std::optional<RunSummary> LiveRun::finish(std::string& fault) {
   p.source->stop();
   p.scribe.stop();
   if (p.state_saver) p.state_saver->stop();
+  if (p.can_recorder) {
+    if (const auto closed = p.can_recorder->close(); !closed) {
+      fault = p.unwritten_recording(closed.error());
+      return std::nullopt;
+    }
+  }
   auto hash = p.log.finish();
   if (!hash) {
     fault = p.options.events + ": cannot be written: " + to_string(hash.error().code);

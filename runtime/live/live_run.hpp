@@ -20,7 +20,8 @@ namespace zonepack {
 struct LiveOptions {
   CanSourceChoice source;
   StartChoice start;
-  std::string events;  // file; empty: none
+  std::string events;      // file; empty: none
+  std::string record_can;  // file; empty: none
   RecorderChoice recorder;
   RecordingPreface preface;  // but for the start
   bool allow_degraded = false;

@@ -34,6 +34,10 @@ class LogSource final : public LiveSource {
   SpscQueue<PoseCorrection>& corrections() noexcept override { return feed_.corrections(); }
   std::int64_t start_ns() const noexcept override { return feed_.start_ns(); }
   bool robot() const noexcept override { return false; }
+  std::string interface() const override {
+    const std::string& name = log_.summary().interface;
+    return name.empty() ? "can0" : name;
+  }
   void stop() noexcept override { feed_.stop(); }
   const CanLogSummary* log_summary() const noexcept override { return &log_.summary(); }
 
@@ -52,6 +56,7 @@ class BusSource final : public LiveSource {
   SpscQueue<PoseCorrection>& corrections() noexcept override { return corrections_; }
   std::int64_t start_ns() const noexcept override { return start_ns_; }
   bool robot() const noexcept override { return true; }
+  std::string interface() const override { return settings_.interface; }
   std::string warning() const override {
     const std::uint32_t granted = bus_->granted_buffer_bytes();
     if (granted == 0 || granted / 2 >= settings_.receive_buffer_bytes) return {};

@@ -38,6 +38,7 @@ class LiveSource {
   virtual SpscQueue<PoseCorrection>& corrections() noexcept = 0;
   virtual std::int64_t start_ns() const noexcept = 0;  // no cycle's time lies before
   virtual bool robot() const noexcept = 0;             // cannot wait, repeat or hurry
+  virtual std::string interface() const = 0;           // whose frames they are, as in a log
   virtual void stop() noexcept {}
   virtual std::string warning() const { return {}; }  // what works, but not as it should
   virtual const CanLogSummary* log_summary() const noexcept { return nullptr; }

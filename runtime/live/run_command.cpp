@@ -90,8 +90,9 @@ int run_live(const RunArguments& arguments) {
   if (!memory) return fail(fault);
   if (!warning.empty()) std::cerr << "zoned run: warning: " << warning << '\n';
 
-  LiveOptions options{arguments.source,        arguments.start, arguments.events, {}, {},
-                      arguments.allow_degraded};
+  LiveOptions options{
+      arguments.source,        arguments.start, arguments.events, arguments.record_can, {}, {},
+      arguments.allow_degraded};
   options.recorder = {arguments.record, state_folder(inputs.settings),
                       inputs.settings.recorder.bytes};
   if (const auto bad = make_preface(arguments, inputs, terms, options.preface)) return fail(*bad);

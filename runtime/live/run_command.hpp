@@ -12,7 +12,7 @@ namespace zonepack {
 struct RunArguments : RunChoices {
   CanSourceChoice source;
   std::string events, json;  // json "-": standard output
-  std::string record;
+  std::string record, record_can;
   std::string program;  // version, for recordings
   bool allow_degraded = false;
   bool check = false;  // see check_command.hpp

@@ -53,6 +53,20 @@ route='select(.event == "zone_entered") | [.cycle, .zone, .x_mm, .y_mm]'
 cmp <(jq -c "$route" live.jsonl) <(jq -c "$route" replay.jsonl) || fail "another route than in the replay"
 [[ $(jq .cycles live.json) == "$(jq .cycles replay.json)" ]] || fail "another number of cycles"
 
+# What is recorded of the bus is the log that was played, and can-utils read it.
+live map 200 --record-can recorded.log >out.txt 2>&1 || fail "$(cat out.txt)"
+grep -v '^$' "$run/can0.log" | cut -d' ' -f1-3 | cmp - recorded.log || fail "another log than the one played"
+log2asc -I recorded.log -O recorded.asc can0 || fail "log2asc does not read it"
+[[ $(grep -c ' Rx ' recorded.asc) == "$(wc -l <recorded.log)" ]] || fail "log2asc leaves lines out"
+exits 1 live map 1 --record-can /nowhere/can.log
+says "/nowhere/can.log"
+
+# No bus: refused by name, with the command that mends it.
+if [ ! -e /sys/class/net/nocan7 ]; then
+  exits 1 "$bin/zoned" run --config "$config" --map map --can socketcan:nocan7
+  says "ip link set nocan7 up type can"
+fi
+
 # Others look on and have their say while it runs; SIGTERM ends it in order, with its results.
 export ZONED_SOCKET=$work/run/zoned.sock
 how=exec live map 1 --json stopped.json --events stopped.jsonl >out.txt 2>&1 &
