@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "platform/board.hpp"
-#include "platform/can_log.hpp"
 #include "platform/realtime.hpp"
 #include "platform/shared_memory.hpp"
+#include "runtime/live/live_source.hpp"
 #include "runtime/map/loader.hpp"
 #include "runtime/memory/shared_layout.hpp"
 #include "runtime/replay/driven_map.hpp"
@@ -119,12 +119,28 @@ class Check {
   }
 
   void source() {
-    if (arguments_.source.kind != CanSourceChoice::Kind::kLog) return;
-    CanLogReader log(arguments_.source.name, inputs_.settings.can.interface);
-    if (const auto opened = log.open(); !opened) {
-      refuse("CAN log", log.explain(opened.error()));
+    using Kind = CanSourceChoice::Kind;
+    const Kind kind = arguments_.source.kind;
+    const char* const name = kind == Kind::kLog      ? "CAN log"
+                             : kind == Kind::kScript ? "CAN script"
+                                                     : "CAN bus";
+    const SpscQueue<LiveNote> notes(1);
+    std::string fault;
+    const auto source = LiveSource::open({.choice = arguments_.source,
+                                          .settings = inputs_.settings,
+                                          .corrections = {},
+                                          .period_ns = 1'000'000,
+                                          .notes = notes,
+                                          .allow_degraded = false},
+                                         fault);
+    if (!source && kind == Kind::kSocketCan) {
+      refuse_privilege(name, fault, "");
+    } else if (!source) {
+      refuse(name, fault);
+    } else if (const std::string warning = source->warning(); !warning.empty()) {
+      rows_.push_back({Row::Kind::kWeak, name, warning, ""});
     } else {
-      good("CAN log", arguments_.source.name);
+      good(name, arguments_.source.name);
     }
   }
 

@@ -304,9 +304,10 @@ void LiveRun::wait() {
   if (const std::string warning = parts_->source->warning(); !warning.empty()) {
     tell("warning: " + warning);
   }
-  BusTeller teller(parts_->options.source.name);
+  BusTeller teller(parts_->source->interface());
+  const bool tells = parts_->options.source.kind != CanSourceChoice::Kind::kLog;
   while (!parts_->control_ended.load()) {
-    if (parts_->source->robot()) {
+    if (tells) {
       if (const auto told = teller.tell(parts_->status.load().bus)) tell(*told);
     }
     if (next_signal(monotonic_ns() + kWatch_ns) == Signal::kStop) parts_->loop->stop();

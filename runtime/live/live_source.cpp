@@ -8,6 +8,7 @@
 #include "platform/socketcan.hpp"
 #include "runtime/live/log_feed.hpp"
 #include "runtime/live/robot_clock.hpp"
+#include "runtime/live/script_source.hpp"
 #include "runtime/replay/run_inputs.hpp"
 
 namespace zonepack {
@@ -73,6 +74,45 @@ class BusSource final : public LiveSource {
   std::int64_t start_ns_ = monotonic_ns();
 };
 
+class ScriptSource final : public LiveSource {
+ public:
+  ScriptSource(LiveSourceTerms& terms, std::unique_ptr<ScriptedBus> script)
+      : script_(std::move(script)),
+        interface_(terms.settings.can.interface.empty() ? "can0" : terms.settings.can.interface),
+        feed_(script_->wire(), std::move(terms.corrections), terms.period_ns, terms.notes) {
+    script_->prepare(feed_.bus());
+  }
+
+  Result<void> start() { return feed_.start(); }
+  RunClock& clock() noexcept override { return feed_; }
+  CanBus& bus() noexcept override { return feed_.bus(); }
+  SpscQueue<PoseCorrection>& corrections() noexcept override { return feed_.corrections(); }
+  std::int64_t start_ns() const noexcept override { return feed_.start_ns(); }
+  bool robot() const noexcept override { return false; }
+  std::string interface() const override { return interface_; }
+  void stop() noexcept override { feed_.stop(); }
+
+ private:
+  std::unique_ptr<ScriptedBus> script_;
+  std::string interface_;
+  LogFeed feed_;
+};
+
+std::unique_ptr<LiveSource> open_script(LiveSourceTerms& terms, std::string& fault) {
+  const LoadedCanScript loaded = load_can_script(terms.choice.name);
+  for (const std::string& wrong : loaded.faults) fault += (fault.empty() ? "" : "\n") + wrong;
+  if (!fault.empty()) return nullptr;
+  auto script = ScriptedBus::make(loaded.script, terms.settings.can.interface,
+                                  cycle_config(terms.settings).odometry, fault);
+  if (!script) return nullptr;
+  auto source = std::make_unique<ScriptSource>(terms, std::move(script));
+  if (const auto started = source->start(); !started) {
+    fault = terms.choice.name + ": cannot be played: " + to_string(started.error().code);
+    return nullptr;
+  }
+  return source;
+}
+
 std::unique_ptr<LiveSource> open_bus(const LiveSourceTerms& terms, std::string& fault) {
   SocketCanSettings settings;
   settings.interface = terms.choice.name;
@@ -102,6 +142,7 @@ std::vector<CanId> odometry_ids(const WheelOdometrySettings& odometry) {
 
 std::unique_ptr<LiveSource> LiveSource::open(LiveSourceTerms terms, std::string& fault) {
   if (terms.choice.kind == CanSourceChoice::Kind::kSocketCan) return open_bus(terms, fault);
+  if (terms.choice.kind == CanSourceChoice::Kind::kScript) return open_script(terms, fault);
   const std::string name = terms.choice.name;
   auto log = std::make_unique<LogSource>(terms);
   if (!log->start(name, fault)) return nullptr;

@@ -33,7 +33,7 @@ class LogFeed final : public RunClock {
   Result<void> start();
   void stop() noexcept;
 
-  CanBus& bus() noexcept { return bus_; }
+  SimCanBus& bus() noexcept { return bus_; }
   SpscQueue<PoseCorrection>& corrections() noexcept { return corrections_; }
   // When the first frame arrives: the time of cycle 0. After start().
   std::int64_t start_ns() const noexcept { return start_ns_; }

@@ -61,10 +61,28 @@ log2asc -I recorded.log -O recorded.asc can0 || fail "log2asc does not read it"
 exits 1 live map 1 --record-can /nowhere/can.log
 says "/nowhere/can.log"
 
+# A simulated bus whose controller leaves it for a second: said, and the pose is less sure meanwhile.
+cat >bus.yaml <<EOF
+log: $run/can0.log
+bit_rate: 500000
+queue: 64
+traffic: [{id: 0x0A0, period: 0.002}]
+faults: [{at: 20, for: 1, kind: bus_off}, {at: 30, for: 1, kind: down}, {at: 40, count: 3, kind: overflow}]
+EOF
+"$bin/zoned" run --config "$config" --map map --can sim:bus.yaml@20 --corrections "$run/corrections.txt" \
+  "${privilege[@]}" --json simulated.json >out.txt 2>&1 || fail "$(cat out.txt)"
+for word in bus-off restarted "can0: down" "can0: up" "3 frames lost"; do says "$word"; done
+holds simulated.json '.can_frames > 50000 and .allocations == 0 and .minor_faults == 0'
+echo "log: [" >bad.yaml
+exits 1 "$bin/zoned" run --config "$config" --map map --can sim:bad.yaml
+says "bad.yaml:"
+
 # No bus: refused by name, with the command that mends it.
 if [ ! -e /sys/class/net/nocan7 ]; then
   exits 1 "$bin/zoned" run --config "$config" --map map --can socketcan:nocan7
   says "ip link set nocan7 up type can"
+  exits 1 "$bin/zoned" run --config "$config" --map map --can socketcan:nocan7 --check
+  says "REFUSED  CAN bus"
 fi
 
 # Others look on and have their say while it runs; SIGTERM ends it in order, with its results.

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "platform/sim/sim_wire.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "platform/can_errors.hpp"
+
+namespace zonepack {
+namespace {
+
+using Kind = SimFault::Kind;
+
+constexpr std::uint32_t kErrorFrameBits = 31;  // with the pause behind it, at most
+
+// Lower wins: the bits in the order in which they are sent, up to the one that tells lengths apart.
+std::uint64_t arbitration_key(const CanFrame& frame) noexcept {
+  const std::uint64_t base = frame.extended ? frame.id >> 18u : frame.id;
+  const std::uint64_t rest = frame.extended ? frame.id & 0x3FFFFu : 0;
+  return (base << 21u) | (std::uint64_t{frame.extended} << 20u) | (rest << 1u) |
+         std::uint64_t{frame.rtr};
+}
+
+}  // namespace
+
+FrameBits bits_of(const CanFrame& frame) noexcept {
+  const std::uint32_t len = frame.rtr ? 0 : frame.len;
+  if (!frame.fd) return {(frame.extended ? 80u : 55u) + 10u * len, 0};
+  // ISO 11898-1: 17 or 21 bits of checksum with fixed stuff bits and a count of stuff bits.
+  const std::uint32_t checksum = len <= 16 ? 26 : 31;
+  const std::uint32_t payload = 5 + 8 * len;
+  return {frame.extended ? 59u : 35u, payload + payload / 4 + checksum};
+}
+
+SimWire::SimWire(SimWireSettings settings, std::vector<CanFrameSource*> nodes)
+    : settings_(std::move(settings)) {
+  for (CanFrameSource* source : nodes) nodes_.push_back({source, source->next()});
+  first_ns_ = INT64_MAX;
+  for (const Node& node : nodes_) {
+    if (node.ready) first_ns_ = std::min(first_ns_, node.ready->stamp_ns);
+  }
+  if (first_ns_ == INT64_MAX) first_ns_ = 0;
+  std::stable_sort(settings_.faults.begin(), settings_.faults.end(),
+                   [](const SimFault& a, const SimFault& b) { return a.at_ns < b.at_ns; });
+  std::vector<Told> told;
+  for (const SimFault& fault : settings_.faults) {
+    const std::int64_t at_ns = first_ns_ + fault.at_ns;
+    if (fault.kind == Kind::kBusOff) {
+      told.push_back({at_ns, error_frame(kCanErrorBusOff)});
+      told.push_back({at_ns + fault.for_ns, error_frame(kCanErrorRestarted)});
+    }
+    if (fault.kind == Kind::kPassive) {
+      told.push_back({at_ns, error_frame(kCanErrorController, kCanControllerPassive)});
+      told.push_back(
+          {at_ns + fault.for_ns, error_frame(kCanErrorController, kCanControllerActive)});
+    }
+  }
+  std::stable_sort(told.begin(), told.end(),
+                   [](const Told& a, const Told& b) { return a.at_ns < b.at_ns; });
+  told_.assign(told.begin(), told.end());
+}
+
+std::vector<CanLinkChange> SimWire::links() const {
+  std::vector<CanLinkChange> changes;
+  for (const SimFault& fault : settings_.faults) {
+    if (fault.kind != Kind::kDown && fault.kind != Kind::kAbsent) continue;
+    const std::int64_t at_ns = first_ns_ + fault.at_ns;
+    changes.push_back({at_ns, fault.kind == Kind::kDown ? CanLink::kDown : CanLink::kAbsent});
+    changes.push_back({at_ns + fault.for_ns, CanLink::kUp});
+  }
+  std::stable_sort(changes.begin(), changes.end(),
+                   [](const auto& a, const auto& b) { return a.at_ns < b.at_ns; });
+  return changes;
+}
+
+std::int64_t SimWire::duration_ns(const CanFrame& frame) const noexcept {
+  if (settings_.bit_rate == 0) return 0;
+  const bool switches = frame.fd && (frame.flags & 1) != 0 && settings_.data_bit_rate > 0;
+  const std::uint64_t data_rate = switches ? settings_.data_bit_rate : settings_.bit_rate;
+  const FrameBits bits = bits_of(frame);
+  return static_cast<std::int64_t>(bits.arbitration * 1'000'000'000ull / settings_.bit_rate +
+                                   bits.data * 1'000'000'000ull / data_rate);
+}
+
+const SimFault* SimWire::active(Kind kind, std::int64_t now_ns) const noexcept {
+  for (const SimFault& fault : settings_.faults) {
+    const std::int64_t since_ns = now_ns - first_ns_ - fault.at_ns;
+    if (since_ns < 0) break;
+    if (fault.kind == kind && since_ns < fault.for_ns) return &fault;
+  }
+  return nullptr;
+}
+
+bool SimWire::is_lost(std::int64_t sent_ns) noexcept {
+  if (active(Kind::kBusOff, sent_ns) != nullptr || active(Kind::kDrop, sent_ns) != nullptr) {
+    return true;
+  }
+  if (active(Kind::kOverflow, sent_ns) != nullptr) {
+    ++overflowed_;
+    return true;
+  }
+  for (SimFault& fault : settings_.faults) {
+    if (sent_ns - first_ns_ < fault.at_ns) break;
+    if (fault.count == 0 || (fault.kind != Kind::kDrop && fault.kind != Kind::kOverflow)) continue;
+    --fault.count;
+    overflowed_ += fault.kind == Kind::kOverflow;
+    return true;
+  }
+  return false;
+}
+
+SimWire::Node* SimWire::next_sender() noexcept {
+  std::int64_t earliest_ns = INT64_MAX;
+  for (const Node& node : nodes_) {
+    if (node.ready) earliest_ns = std::min(earliest_ns, node.ready->stamp_ns);
+  }
+  const std::int64_t start_ns = std::max(earliest_ns, free_ns_);
+  Node* winner = nullptr;
+  for (Node& node : nodes_) {
+    if (!node.ready || node.ready->stamp_ns > start_ns) continue;
+    if (winner == nullptr || arbitration_key(*node.ready) < arbitration_key(*winner->ready)) {
+      winner = &node;
+    }
+  }
+  return winner;
+}
+
+std::optional<CanFrame> SimWire::next() noexcept {
+  while (nodes_.front().ready) {
+    Node* const sender = next_sender();
+    CanFrame frame = *sender->ready;
+    const std::int64_t ready_ns = frame.stamp_ns;
+    const std::int64_t start_ns = settings_.bit_rate == 0 ? ready_ns : std::max(ready_ns, free_ns_);
+    if (!told_.empty() && told_.front().at_ns <= start_ns) {
+      CanFrame error = told_.front().frame;
+      error.stamp_ns = told_.front().at_ns;
+      told_.pop_front();
+      return error;
+    }
+    waited_ += start_ns > ready_ns;
+    std::int64_t took_ns = duration_ns(frame);
+    if (active(Kind::kNoise, start_ns) != nullptr && settings_.bit_rate > 0) {
+      took_ns += took_ns +
+                 static_cast<std::int64_t>(kErrorFrameBits * 1'000'000'000ull / settings_.bit_rate);
+    }
+    frame.stamp_ns = start_ns + took_ns;
+    free_ns_ = std::max(free_ns_, frame.stamp_ns);
+    sender->ready = sender->source->next();
+    if (is_lost(start_ns)) continue;
+    if (const SimFault* const delay = active(Kind::kDelay, frame.stamp_ns)) {
+      frame.stamp_ns = first_ns_ + delay->at_ns + delay->for_ns;
+    }
+    return frame;
+  }
+  if (told_.empty()) return std::nullopt;
+  CanFrame error = told_.front().frame;
+  error.stamp_ns = told_.front().at_ns;
+  told_.pop_front();
+  return error;
+}
+
+std::uint64_t SimWire::dropped() const noexcept {
+  std::uint64_t dropped = overflowed_;
+  for (const Node& node : nodes_) dropped += node.source->dropped();
+  return dropped;
+}
+
+}  // namespace zonepack
