@@ -50,6 +50,11 @@ constexpr bool is_integer(fb::Field field) noexcept {
   return field == fb::Field::WordId || field == fb::Field::Octave;
 }
 
+// Of the whole table, not of its rows: one row in the first record.
+constexpr bool is_attribute(fb::Field field) noexcept {
+  return field == fb::Field::Shape || field == fb::Field::Info;
+}
+
 // Bits [index * width, (index + 1) * width) of a little-endian bit string; width 0..32. Reads up to
 // kColumnPadding bytes past the last bit.
 inline std::uint32_t packed_at(const std::byte* bytes, std::uint32_t index,
@@ -144,6 +149,10 @@ void for_each_scan_index(const ColumnView& column, Fn&& fn) {
 // Whether the column's size, width and parameters fit its codec and row count, so that no accessor
 // above reads outside column bytes plus kColumnPadding. `bytes` are the chunk's.
 bool column_is_sound(const fb::Column& column, ByteSpan bytes, std::uint32_t rows) noexcept;
+
+// The same of all columns of a record, and that each has a codec its field may have.
+bool columns_are_sound(std::span<const fb::Column> columns, ByteSpan bytes,
+                       std::uint32_t rows) noexcept;
 
 // Whether bit strings hold exactly the declared rows, and what the codec does not use is zero.
 // Costs a pass over the column; for verify.

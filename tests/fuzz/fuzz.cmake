@@ -10,11 +10,12 @@ endif()
 
 set(fuzz_dir ${CMAKE_CURRENT_LIST_DIR})
 set(fuzz_libraries zonepack_packer_test_support zonepack_packer zonepack_runtime)
-add_library(zonepack_fuzz STATIC ${fuzz_dir}/entries.cpp ${fuzz_dir}/seeds.cpp)
+add_library(zonepack_fuzz STATIC ${fuzz_dir}/entries.cpp ${fuzz_dir}/reference_checks.cpp
+            ${fuzz_dir}/seeds.cpp)
 zonepack_settings(zonepack_fuzz)
 target_link_libraries(zonepack_fuzz PUBLIC ${fuzz_libraries})
 
-add_executable(test_fuzz ${fuzz_dir}/mutation_test.cpp)
+add_executable(test_fuzz ${fuzz_dir}/chunk_check_test.cpp ${fuzz_dir}/mutation_test.cpp)
 zonepack_settings(test_fuzz)
 target_link_libraries(test_fuzz PRIVATE zonepack_fuzz GTest::gtest GTest::gtest_main)
 gtest_discover_tests(test_fuzz TEST_PREFIX "fuzz/" DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
