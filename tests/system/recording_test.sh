@@ -7,6 +7,7 @@ mission=$data/scenario1_loop
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
+export ZONED_SOCKET=$work/zoned.sock
 
 fail() { echo "$*" >&2; exit 1; }
 exits() {  # CODE COMMAND...

@@ -7,6 +7,7 @@ run=$data/scenario1_loop
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
+export ZONED_SOCKET=$work/run/zoned.sock
 
 fail() { echo "$*" >&2; exit 1; }
 
@@ -86,7 +87,6 @@ if [ ! -e /sys/class/net/nocan7 ]; then
 fi
 
 # Others look on and have their say while it runs; SIGTERM ends it in order, with its results.
-export ZONED_SOCKET=$work/run/zoned.sock
 how=exec live map 1 --json stopped.json --events stopped.jsonl >out.txt 2>&1 &
 pid=$!
 for _ in $(seq 200); do
@@ -121,7 +121,6 @@ exits 0 live damaged 200 --json damaged.json
 says "zone C2 cannot be loaded"
 holds damaged.json '.budget_violations == 0 and .signatures_loaded > 0'
 
-unset ZONED_SOCKET
 exits 0 live map 1 --check
 says "The run would start"
 exits 1 live map 1 --check --budget 400KiB

@@ -9,6 +9,7 @@ mission=$data/scenario1_loop
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
+export ZONED_SOCKET=$work/zoned.sock
 
 privilege=()
 chrt -f 1 true 2>/dev/null || privilege=(--allow-degraded)
