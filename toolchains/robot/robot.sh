@@ -59,7 +59,7 @@ prepare_robot() {  # arm64|armhf|rt-arm64
   set_flavour "$1" || exit 2
   ready
   build ci --target zonepack zoned
-  cross_build "$arch" zoned
+  cross_build "$arch" zoned zonectl
   toolchains/cross/packages.sh "$arch" runtime
   make_guest
 }
