@@ -123,6 +123,7 @@ StorageFile& StorageFile::operator=(StorageFile&& other) noexcept {
 StorageFile::~StorageFile() {
   if (fd_ < 0) return;
   if (mode_ != ReadMode::kCached) {
+    if (mode_ == ReadMode::kDirect) ::fcntl(fd_, F_SETFL, 0);  // to wait for the cache's pages
     for (std::size_t i = 0; i < ahead_count_; ++i) wait_for(fd_, ahead_[i].from, ahead_[i].to);
     ::posix_fadvise(fd_, 0, 0, POSIX_FADV_DONTNEED);
   }
@@ -188,6 +189,7 @@ Result<std::span<const std::byte>> StorageFile::read_direct(std::uint64_t offset
     if (got == 0 || at % kDirectAlignment != 0) break;
   }
   if (at < offset + size) return truncated(fd_, at);
+  settle_ahead(offset + size);
   drop_behind(offset + size);  // some file systems serve direct reads from the cache
   return std::span<const std::byte>(room.subspan(offset - from, size));
 }
