@@ -3,7 +3,7 @@
 
 #include "platform/base/require.hpp"
 #include "platform/clock.hpp"
-#include "runtime/map/loader.hpp"
+#include "runtime/map/run_load.hpp"
 
 namespace zonepack {
 namespace {
@@ -51,13 +51,32 @@ class ChunkPlaces {
 
 }  // namespace
 
-LiveLoader::LiveLoader(const Catalog& catalog, SharedMap& map)
+// A load as it runs in this thread.
+class LiveLoader::Host final : public LoadHost {
+ public:
+  Host(LiveLoader& loader, const LoadRequest& request)
+      : loader_(loader), request_(request), places_(loader.map_, loader.slots_) {}
+
+  std::int64_t now_ns() noexcept override { return monotonic_ns(); }
+  void sleep_until(std::int64_t time_ns) noexcept override { loader_.wakeup_.wait_until(time_ns); }
+  bool cancelled() noexcept override { return loader_.cancelled(request_); }
+  void loaded(const ChunkRef& chunk) noexcept override { places_.add(chunk); }
+
+ private:
+  LiveLoader& loader_;
+  const LoadRequest& request_;
+  ChunkPlaces places_;
+};
+
+LiveLoader::LiveLoader(const Catalog& catalog, SharedMap& map, const ReadingChoice& reading)
     : catalog_(&catalog),
       map_(map),
       pool_(map.links()),
       inbox_(map.slot_count() + 4),
       outbox_(4),
-      read_buffer_(kReadBufferBytes) {
+      read_buffer_(kReadBufferBytes),
+      mode_(reading.mode),
+      rate_(reading.rate_limit) {
   slots_.reserve(map.slot_count());
   places_.reserve(map.slot_count());
 }
@@ -84,7 +103,9 @@ void LiveLoader::load(const LoadRequest& request) noexcept {
 }
 
 void LiveLoader::cancel() noexcept {
-  if (under_way_) cancelled_.store(key_of(*under_way_), std::memory_order_release);
+  if (!under_way_) return;
+  cancelled_.store(key_of(*under_way_), std::memory_order_release);
+  wakeup_.post();  // from a pause that keeps to the rate
 }
 
 void LiveLoader::take_back(SlotChain slots) noexcept {
@@ -107,6 +128,7 @@ void LiveLoader::run() {
         pool_.give_back(message.slots);
       } else {
         ZP_REQUIRE(outbox_.push(fill(message)));
+        load_.reset();
       }
     }
     wakeup_.wait_until(monotonic_ns() + kLongestSleep_ns);
@@ -139,17 +161,12 @@ Error LiveLoader::read_zone(const Message& message, const SlotChain& slots) {
     places_.push_back(map_.slot(slot).data());
   }
   if (cancelled(request)) return {ErrorCode::kCancelled};
-  auto load = ZoneLoad::begin(*message.catalog, request.zone, places_, read_buffer_);
-  if (!load) return load.error();
-  ChunkPlaces chunks(map_, slots_);
-  for (;;) {
-    if (cancelled(request)) return {ErrorCode::kCancelled};
-    const Result<bool> more = load->step();
-    if (!more) return more.error();
-    if (!*more) break;
-    chunks.add(load->chunks().back());
-  }
-  bytes_loaded_ += load->stored_bytes_read();
+  auto begun = ZoneLoad::begin(*message.catalog, request.zone, places_, read_buffer_, mode_);
+  if (!begun) return begun.error();
+  load_.emplace(std::move(begun).value());
+  Host host(*this, request);
+  if (const auto loaded = run_load(*load_, rate_, host); !loaded) return loaded.error();
+  bytes_loaded_ += load_->stored_bytes_read();
   return {};
 }
 

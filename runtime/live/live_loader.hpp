@@ -11,6 +11,8 @@
 #include "platform/spsc_queue.hpp"
 #include "platform/wakeup.hpp"
 #include "runtime/map/catalog.hpp"
+#include "runtime/map/loader.hpp"
+#include "runtime/map/rate_limit.hpp"
 #include "runtime/memory/shared_map.hpp"
 #include "runtime/memory/slot_pool.hpp"
 #include "runtime/zone_loader.hpp"
@@ -22,10 +24,16 @@ namespace zonepack {
 //
 // Threads: the calls of ZoneLoader by the control thread; the queues have room for every slot and
 // every load, so posting cannot fail. The thread owns the free slots, and those being filled.
+// How packs are read.
+struct ReadingChoice {
+  ReadMode mode = kDefaultReadMode;
+  std::uint64_t rate_limit = 0;  // bytes per second, 0: none
+};
+
 class LiveLoader final : public ZoneLoader {
  public:
   // `catalog` and `map` must outlive this object.
-  LiveLoader(const Catalog& catalog, SharedMap& map);
+  LiveLoader(const Catalog& catalog, SharedMap& map, const ReadingChoice& reading = {});
   ~LiveLoader() override;
 
   Result<void> start(const ThreadSettings& settings, bool allow_ordinary);
@@ -45,6 +53,7 @@ class LiveLoader final : public ZoneLoader {
   bool is_realtime() const noexcept { return thread_.is_realtime(); }
 
  private:
+  class Host;
   struct Message {
     enum class Kind : std::uint8_t { kLoad, kTakeBack };
     Kind kind = Kind::kLoad;
@@ -71,6 +80,9 @@ class LiveLoader final : public ZoneLoader {
   std::vector<SlotIndex> slots_;
   std::vector<std::byte*> places_;
   std::vector<std::byte> read_buffer_;
+  ReadMode mode_;
+  RateLimit rate_;
+  std::optional<ZoneLoad> load_;  // closed after its result is told: pages are dropped then
   Wakeup wakeup_;
   Thread thread_;
 };

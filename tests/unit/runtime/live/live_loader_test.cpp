@@ -97,6 +97,28 @@ TEST_F(Loading, AnswersACancelledLoadOnceWithItsSlotsGivenBack) {
   EXPECT_EQ(load(1, 1).error.code, ErrorCode::kOk);
 }
 
+TEST_F(Loading, KeepsToItsRateAndGivesUpInTheMiddleOfAPause) {
+  // At 1 byte a second the bucket of 64 KiB serves two loads of this zone; a third would take
+  // hours.
+  loader = std::make_unique<LiveLoader>(catalog, *map, ReadingChoice{.rate_limit = 1});
+  EXPECT_TRUE(loader->start({.name = "loader"}, true).ok());
+  const ByteCount bytes_of_load = catalog.zones[0].stored_bytes + sizeof(PackHeader) +
+                                  open_pack(catalog, 0)->tail().index_size + sizeof(PackTail);
+  ASSERT_LE(2 * bytes_of_load, kReadBufferBytes);
+  ASSERT_GT(3 * bytes_of_load, kReadBufferBytes);
+  for (std::uint32_t turn = 1; turn <= 2; ++turn) {
+    const LoadResult done = load(0, turn);
+    ASSERT_EQ(done.error.code, ErrorCode::kOk);
+    loader->take_back(done.slots);
+  }
+  loader->load({0, 3, catalog.zones[0].slots});
+  sleep_until_ns(monotonic_ns() + 5'000'000);  // without a limit it would be done by now
+  loader->cancel();
+  EXPECT_EQ(result().error.code, ErrorCode::kCancelled);
+  loader->load({0, 4, catalog.zones[0].slots});
+  loader->stop();  // and comes back
+}
+
 TEST_F(Loading, FailsAZoneWhosePackIsNotThereAndGoesOnWithOthers) {
   catalog.zones[0].pack = "nowhere.zpk";
   EXPECT_EQ(load(0, 1).error.code, ErrorCode::kNotFound);
