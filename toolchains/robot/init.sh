@@ -7,7 +7,7 @@ export PATH=/bin HOME=/tmp TERM=${TERM:-vt100}
 mount -t proc proc /proc
 mount -t sysfs sysfs /sys
 mount -t devtmpfs dev /dev 2>/dev/null
-mkdir -p /dev/pts /dev/shm
+mkdir -p /dev/pts /dev/shm /var/tmp
 mount -t devpts pts /dev/pts
 for place in /dev/shm /tmp /run; do mount -t tmpfs none $place; done
 while read -r module; do insmod /modules/"$module".ko || echo "insmod $module failed"; done </modules/order

@@ -1,18 +1,26 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# The virtual robot for a person: the sample drive on vcan0, round and round, and a shell. `exit` switches it off.
+# The virtual robot for a person: the sample drive on vcan0 and through zoned, again and again, and a shell.
+# `exit` switches it off.
 . /payload/tests/lib.sh
 set +eu
 cd /tmp || exit
 vcan_up vcan0
-canplayer -l i -I "$run/can0.log" vcan0=can0 &
+mkdir -p /run/zoned
+while :; do
+  canplayer -I "$run/can0.log" vcan0=can0 &
+  zoned run --config "$config" --map /payload/map --can "log:$run/can0.log" --corrections "$run/corrections.txt" \
+    --max-signatures 100 --allow-degraded >>zoned.log 2>&1 || sleep 5
+  wait $!
+done &
 cat <<TEXT
 
-A robot drives through the sample hospital: its wheels speak on vcan0, its map is in /payload/map.
-  candump vcan0                                   listen to the bus
-  zoned replay --help                             drive a recorded run
-  zoned replay --config $config --map /payload/map --can $run/can0.log --corrections $run/corrections.txt
-  exit                                            switch the robot off
+A robot drives through the sample hospital, two minutes, again and again.
+  zonectl watch        what is in memory while it drives
+  zonectl --help       what else can be asked and told
+  candump vcan0        its wheels on the bus
+  cat /tmp/zoned.log   what zoned said
+  exit                 switch the robot off
 
 TEXT
 # Line editing; busybox's shell would prefer its own small ip.
