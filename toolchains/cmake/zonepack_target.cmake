@@ -2,6 +2,7 @@
 # What every target of the project shares: warnings, include root, bit-exact arithmetic.
 
 find_package(Threads REQUIRED)
+include(zonepack_unity)
 
 # zonepack_library(NAME DIR...): a static library of every .cpp below the given folders.
 function(zonepack_library name)
@@ -28,6 +29,7 @@ endfunction()
 # Its vectoriser of straight code makes fused multiply-adds even with -ffp-contract=off where the target
 # has them (-march=native), so it is off.
 function(zonepack_settings target)
+  zonepack_compile_alone()
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off
                          $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -fno-tree-slp-vectorize> $<$<BOOL:${ZONEPACK_WERROR}>:-Werror>)
   target_compile_definitions(${target} PRIVATE EIGEN_DONT_VECTORIZE)
