@@ -60,10 +60,12 @@ Result<const wire::Reply*> Connection::exchange(std::span<const std::byte> reque
     // Zoned may have told why it hangs up before it did.
     if (sent.error().code == ErrorCode::kCancelled) break;
     if (sent.error().code != ErrorCode::kBusy) return sent.error();
-    if (!socket_.wait(true, left_ms(end_ns))) return ErrorCode::kBusy;
+    if (!socket_.wait(true, left_ms(end_ns)) && monotonic_ns() >= end_ns) return ErrorCode::kBusy;
   }
   for (;;) {
     const auto reply = receive(left_ms(end_ns));
+    // A signal to this process ends the wait, not the answer.
+    if (!reply && reply.error().code == ErrorCode::kBusy && monotonic_ns() < end_ns) continue;
     if (!reply) return reply.error();
     const std::uint64_t id = (*reply)->id();
     if (id == last_id_ || (id == 0 && (*reply)->fault() != wire::Fault::None)) return *reply;

@@ -2,9 +2,13 @@
 #include "runtime/client/client.hpp"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <optional>
+#include <thread>
 
 #include "runtime/pack_format/pack_reader.hpp"
 #include "tests/support/shared_zones.hpp"
@@ -79,6 +83,23 @@ TEST_F(Connected, TellsWhyZonedRefuses) {
   EXPECT_EQ(client.last_words(), "because of the test");
   zoned->fault = wire::Fault::NoRoom;
   EXPECT_EQ(client.lease(0).error().code, ErrorCode::kNoRoom);
+}
+
+TEST_F(Connected, WaitsForTheAnswerThroughSignals) {
+  struct sigaction handler {};
+  handler.sa_handler = [](int) {};  // without SA_RESTART: system calls end with EINTR
+  struct sigaction before {};
+  ASSERT_EQ(sigaction(SIGUSR1, &handler, &before), 0);
+  zoned->answers_after_ms = 100;
+  std::thread disturber([waiting = pthread_self()] {
+    for (int i = 0; i < 5; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      pthread_kill(waiting, SIGUSR1);
+    }
+  });
+  EXPECT_TRUE(client.pose().ok());
+  disturber.join();
+  sigaction(SIGUSR1, &before, nullptr);
 }
 
 TEST_F(Connected, GoesOnReadingButSaysThatZonedIsGone) {

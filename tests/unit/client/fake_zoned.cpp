@@ -2,6 +2,7 @@
 #include "tests/unit/client/fake_zoned.hpp"
 
 #include <array>
+#include <chrono>
 #include <utility>
 
 namespace zonepack::test_support {
@@ -45,6 +46,7 @@ void FakeZoned::serve() {
 }
 
 void FakeZoned::answer(const LocalSocket& client, const wire::Request& request) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(answers_after_ms));
   const auto send = [&](std::span<const std::byte> bytes, std::span<const int> files = {}) {
     static_cast<void>(client.send(bytes, files));
   };

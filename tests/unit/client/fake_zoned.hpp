@@ -21,6 +21,7 @@ class FakeZoned {
   // Zones 0 and 1 of map `serial` from now on; told to the client with its next answer.
   void change_map(std::uint32_t serial, std::vector<std::string> names);
   std::atomic<wire::Fault> fault{wire::Fault::None};  // the answer to everything from now on
+  std::atomic<int> answers_after_ms{0};
   std::atomic<std::int64_t> pose_stamp_ns{0};         // of the last pose in
   std::atomic<std::uint32_t> released{0};
 
