@@ -28,7 +28,7 @@ double speed_along(const PoseEstimate& pose, Point2 direction) noexcept {
   const double c = det_cos(pose.T_map_base.yaw_rad), s = det_sin(pose.T_map_base.yaw_rad);
   const double x = c * pose.speed_m_s - s * pose.sideways_m_s;
   const double y = s * pose.speed_m_s + c * pose.sideways_m_s;
-  return x * direction.x + y * direction.y;
+  return x * direction.x_m + y * direction.y_m;
 }
 
 }  // namespace
