@@ -29,6 +29,8 @@ Cycle::Cycle(const CycleConfig& settings, const CycleParts& parts)
       preload_(parts.graph, parts.load_s, settings.preload),
       keeper_(parts.memory, parts.loader, events_, parts.needs, parts.pinned, parts.directory,
               settings.keeper),
+      markers_(parts.graph, settings.markers),
+      dock_(settings.dock),
       tracker_settings_(settings.tracker) {}
 
 void Cycle::start_at(std::int64_t now_ns, const Pose2& T_map_base) noexcept {
@@ -59,6 +61,8 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
   watch_odometry(now_ns);
   for (const PoseCorrection& fix : input.corrections) take(fix, now_ns);
   state_.pose = filter_.estimate(now_ns);
+  const ZoneId zone_before = tracker_.zone();
+  for (const LineEdge& edge : input.edges) take(edge, now_ns);
   if (state_.pose.valid && !had_pose) emit(EventKind::kPoseInitialised);
 
   keeper_.collect(now_ns, input.loads);
@@ -68,7 +72,7 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
     replies_[reply_count_] = obey(command, now_ns);
     replies_[reply_count_++].id = command.id;
   }
-  follow_zones();
+  follow_zones(zone_before);
   const Wanted wanted = list_wanted();
   keeper_.keep(now_ns, {wanted.zones.data(), wanted.count}, wanted.urgent);
 
@@ -101,11 +105,56 @@ void Cycle::take(const PoseCorrection& fix, std::int64_t now_ns) noexcept {
   }
 }
 
+void Cycle::take(const LineEdge& edge, std::int64_t now_ns) noexcept {
+  if (edge.line == LineEdge::kDock) {
+    dock(edge, now_ns);
+  } else if (edge.line == LineEdge::kHold) {
+    freeze(frozen_, edge.active);
+    emit(edge.active ? EventKind::kHoldBegun : EventKind::kHoldEnded);
+  } else if (edge.active && edge.line - LineEdge::kFirstMarker < markers_.size()) {
+    pass_marker(edge.line - LineEdge::kFirstMarker);
+  }
+}
+
+void Cycle::dock(const LineEdge& edge, std::int64_t now_ns) noexcept {
+  if (!edge.active || !dock_) {
+    emit(EventKind::kUndocked);
+    return;
+  }
+  const CorrectionVerdict verdict = filter_.reset(
+      {edge.stamp_ns, now_ns, dock_->T_map_base, dock_->sigma_m, dock_->sigma_m, dock_->sigma_rad},
+      now_ns);
+  if (!is_used(verdict)) {
+    emit(EventKind::kCorrectionRejected, kNoZone, to_string(verdict));
+    return;
+  }
+  state_.pose = filter_.estimate(now_ns);
+  tracker_.restart();
+  preload_.restart();
+  emit(EventKind::kDocked);
+}
+
+void Cycle::pass_marker(std::size_t marker) noexcept {
+  const MarkerVerdict verdict = markers_.pass(marker, state_.pose, tracker_.zone());
+  if (verdict.refused != nullptr) {
+    emit(EventKind::kMarkerIgnored, kNoZone, verdict.refused);
+    return;
+  }
+  tracker_.confirm(verdict.zone, markers_.reach_m(marker));
+  emit(EventKind::kZoneConfirmed, verdict.zone);
+}
+
+void Cycle::freeze(bool by_command, bool by_line) noexcept {
+  frozen_ = by_command;
+  held_ = by_line;
+  memory_.freeze(frozen_ || held_);
+}
+
 void Cycle::watch_odometry(std::int64_t now_ns) noexcept {
   const bool stale = odometry_.stale(now_ns);
   if (stale) filter_.drift_until(now_ns);
-  if (stale == odometry_stale_) return;
-  odometry_stale_ = stale;
+  if (stale == state_.odometry_stale) return;
+  state_.odometry_stale = stale;
   emit(stale ? EventKind::kOdometryStale : EventKind::kOdometryResumed);
 }
 
@@ -130,7 +179,7 @@ CommandReply Cycle::obey(const Command& command, std::int64_t now_ns) noexcept {
       break;
     case Command::Kind::kFreeze:
     case Command::Kind::kUnfreeze:
-      memory_.freeze(command.kind == Command::Kind::kFreeze);
+      freeze(command.kind == Command::Kind::kFreeze, held_);
       break;
     case Command::Kind::kLease:
       if (!exists(command.zone)) {
@@ -156,9 +205,9 @@ CommandReply Cycle::obey(const Command& command, std::int64_t now_ns) noexcept {
   return reply;
 }
 
-void Cycle::follow_zones() noexcept {
-  const ZoneId before = tracker_.zone();
-  if (tracker_.update(state_.pose)) {
+void Cycle::follow_zones(ZoneId before) noexcept {
+  tracker_.update(state_.pose);
+  if (tracker_.zone() != before) {
     state_.zone = tracker_.zone();
     emit(EventKind::kZoneEntered, state_.zone);
     if (before != kNoZone) {
@@ -212,7 +261,7 @@ void Cycle::go_on_from(const Cycle& other) noexcept {
   state_.map_ready = false;
   state_.blocked = false;
   start_ns_ = other.start_ns_;
-  odometry_stale_ = other.odometry_stale_;
+  freeze(other.frozen_, other.held_);
   events_.begin_cycle(state_.cycles - 1, other.events_.t_ns());
 }
 

@@ -4,11 +4,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "platform/can_bus.hpp"
 #include "runtime/command.hpp"
 #include "runtime/event.hpp"
+#include "runtime/line_edge.hpp"
 #include "runtime/map_keeper.hpp"
 #include "runtime/memory/residency.hpp"
 #include "runtime/odometry/pose.hpp"
@@ -18,6 +21,7 @@
 #include "runtime/zones/preload.hpp"
 #include "runtime/zones/tracker.hpp"
 #include "runtime/zones/zone_graph.hpp"
+#include "runtime/zones/zone_markers.hpp"
 
 namespace zonepack {
 
@@ -27,6 +31,12 @@ struct CycleConfig {
   TrackerSettings tracker;
   PreloadSettings preload;
   MapKeeperSettings keeper;
+  struct Dock {
+    Pose2 T_map_base;
+    double sigma_m = 0, sigma_rad = 0;
+  };
+  std::optional<Dock> dock;
+  std::vector<ZoneMarkerSettings> markers;
 };
 
 // What a cycle works on; all of it outlives the cycle.
@@ -49,6 +59,7 @@ struct CycleInput {
   std::span<const PoseCorrection> corrections{};
   std::span<const LoadResult> loads{};  // polled from the loader
   std::span<const Command> commands{};  // at most Cycle::kMostCommands
+  std::span<const LineEdge> edges{};
 };
 
 struct CycleState {
@@ -57,6 +68,7 @@ struct CycleState {
   bool zone_resident = false;
   bool map_ready = false;  // the pose is trusted and the robot's own zone resident
   bool blocked = false;    // a wanted zone does not fit
+  bool odometry_stale = true;
   std::uint64_t cycles = 0;
   std::uint64_t zone_switches = 0;  // from one zone to another
 };
@@ -67,7 +79,8 @@ struct CycleState {
 // Invariant: a function of its inputs only: the settings, the map, and what run() is given, in that
 // order. Not of wall clock, memory addresses or timing.
 // Real-time: run() neither allocates, locks, waits nor throws; its work is bounded by the frames,
-// corrections and commands given, plus the bounds of tracker, preload and keeper.   Threads: one.
+// corrections, commands and edges given, plus the bounds of tracker, preload and keeper.   Threads:
+// one.
 class Cycle {
  public:
   static constexpr std::size_t kMostCommands = 16;
@@ -109,9 +122,13 @@ class Cycle {
 
  private:
   void take(const PoseCorrection& fix, std::int64_t now_ns) noexcept;
+  void take(const LineEdge& edge, std::int64_t now_ns) noexcept;
+  void dock(const LineEdge& edge, std::int64_t now_ns) noexcept;
+  void pass_marker(std::size_t marker) noexcept;
+  void freeze(bool by_command, bool by_line) noexcept;
   void watch_odometry(std::int64_t now_ns) noexcept;
   CommandReply obey(const Command& command, std::int64_t now_ns) noexcept;
-  void follow_zones() noexcept;
+  void follow_zones(ZoneId before) noexcept;
   struct Wanted {
     std::array<ZoneId, MapKeeper::kMaxWanted> zones{};
     std::size_t count = 0;
@@ -131,6 +148,8 @@ class Cycle {
   ZoneTracker tracker_;
   Preload preload_;
   MapKeeper keeper_;
+  ZoneMarkers markers_;
+  std::optional<CycleConfig::Dock> dock_;
   TrackerSettings tracker_settings_;
   CycleState state_;
   std::array<ZoneId, Command::kMostRoute> route_{};
@@ -138,7 +157,8 @@ class Cycle {
   std::array<CommandReply, kMostCommands> replies_{};
   std::size_t reply_count_ = 0;
   std::int64_t start_ns_ = 0;
-  bool odometry_stale_ = true;
+  bool frozen_ = false;  // by command
+  bool held_ = false;    // by the hold line
 };
 
 }  // namespace zonepack

@@ -51,6 +51,18 @@ const char* to_string(EventKind kind) noexcept {
       return "map_changed";
     case EventKind::kMapRefused:
       return "map_refused";
+    case EventKind::kDocked:
+      return "docked";
+    case EventKind::kUndocked:
+      return "undocked";
+    case EventKind::kHoldBegun:
+      return "hold_begun";
+    case EventKind::kHoldEnded:
+      return "hold_ended";
+    case EventKind::kZoneConfirmed:
+      return "zone_confirmed";
+    case EventKind::kMarkerIgnored:
+      return "marker_ignored";
     case EventKind::kEnd:
       return "end";
   }

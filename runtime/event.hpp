@@ -32,6 +32,12 @@ enum class EventKind : std::uint8_t {
   kMapOffered,    // another version of the map is to be taken
   kMapChanged,    // it was; zones from here on are the new map's
   kMapRefused,    // it was not, reason says why: the old one stays
+  kDocked,         // the dock's contact closed: the pose is where the dock is, and trusted
+  kUndocked,       // it opened
+  kHoldBegun,      // the hold line: nothing is evicted until
+  kHoldEnded,      //
+  kZoneConfirmed,  // a marker was passed: the robot's zone, moved there if it was another
+  kMarkerIgnored,  // reason: why what it says is not believed
   kEnd,
 };
 

@@ -7,6 +7,7 @@
 #include "runtime/live/can_source.hpp"
 #include "runtime/live/check_command.hpp"
 #include "runtime/live/run_command.hpp"
+#include "runtime/live/safe_outputs_command.hpp"
 #include "runtime/replay/replay_command.hpp"
 #include "runtime/report/report.hpp"
 
@@ -153,7 +154,12 @@ int main(int argc, char** argv) {
       "Exit codes: 0 done, 1 the input or the world is bad, 2 usage.",
       "zoned");
   app.set_version_flag("--version", ZONEPACK_VERSION);
-  app.require_subcommand(1);
+  bool safe_outputs = false;
+  std::string config;
+  app.add_flag("--safe-outputs", safe_outputs,
+               "set the output lines of --config to their safe levels, after a crash");
+  add_file(app, "--config", config, "settings of the robot (YAML), for --safe-outputs");
+  app.require_subcommand(0, 1);
   ReplayArguments arguments;
   int exit_code = 0;
   add_replay(app, arguments, exit_code);
@@ -163,6 +169,10 @@ int main(int argc, char** argv) {
   add_calibrate(app, calibrate_arguments, exit_code);
   try {
     app.parse(argc, argv);
+    if (safe_outputs == !app.get_subcommands().empty() || safe_outputs == config.empty()) {
+      throw CLI::RequiredError("A subcommand, or --safe-outputs --config FILE,");
+    }
+    if (safe_outputs) exit_code = zonepack::run_safe_outputs(config);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }

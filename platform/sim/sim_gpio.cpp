@@ -8,14 +8,14 @@
 
 namespace zonepack {
 
-using Guard = std::lock_guard<std::mutex>;
+using Locked = std::lock_guard<std::mutex>;
 
 class SimGpio::Output final : public GpioOutput {
  public:
   Output(SimGpio& gpio, const Place& place, bool active_low)
       : gpio_(gpio), wire_(*place.wire), line_(*place.line), active_low_(active_low) {}
   ~Output() override {
-    const Guard guard(gpio_.mutex_);
+    const Locked guard(gpio_.mutex_);
     line_.consumer.clear();
   }
 
@@ -47,14 +47,14 @@ class SimGpio::Input final : public GpioInput {
         active_low_(settings.active_low),
         filter_(settings.debounce_ns) {}
   ~Input() override {
-    const Guard guard(gpio_.mutex_);
+    const Locked guard(gpio_.mutex_);
     line_.consumer.clear();
     line_.watched = false;
     line_.edges.clear();
   }
 
   Result<std::size_t> take(std::span<GpioEdge> into) noexcept override {
-    const Guard guard(gpio_.mutex_);
+    const Locked guard(gpio_.mutex_);
     if (wire_.gone) return {ErrorCode::kIo, ENODEV};
     look_again_ |= line_.edges.size() == kQueue;
     std::size_t count = 0;
@@ -89,7 +89,7 @@ class SimGpio::Input final : public GpioInput {
 };
 
 void SimGpio::add_chip(const std::string& label, unsigned lines) {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   auto made = std::make_unique<Wire>();
   made->name = "gpiochip" + std::to_string(wires_.size());
   made->label = label;
@@ -109,27 +109,27 @@ SimGpio::Line& SimGpio::line(const std::string& label, unsigned number) const {
 }
 
 void SimGpio::name_line(const std::string& label, unsigned number, const std::string& name) {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   line(label, number).name = name;
 }
 
 void SimGpio::remove_chip(const std::string& label) {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   wire(label)->gone = true;
 }
 
 void SimGpio::advance_to(std::int64_t now_ns) {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   now_ns_ = std::max(now_ns_, now_ns);
 }
 
 std::int64_t SimGpio::now_ns() const {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   return now_ns_;
 }
 
 void SimGpio::drive(const std::string& label, unsigned number, bool high) {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   Line& driven = line(label, number);
   if (driven.high == high) return;
   driven.high = high;
@@ -137,35 +137,35 @@ void SimGpio::drive(const std::string& label, unsigned number, bool high) {
 }
 
 bool SimGpio::is_high(const std::string& label, unsigned number) const {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   return line(label, number).high;
 }
 
 std::uint64_t SimGpio::changes(const std::string& label, unsigned number) const {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   return line(label, number).changes;
 }
 
 void SimGpio::occupy(const std::string& label, unsigned number, const std::string& consumer) {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   line(label, number).consumer = consumer;
 }
 
 void SimGpio::release(const std::string& label, unsigned number) { occupy(label, number, ""); }
 
 void SimGpio::make_output(const std::string& label, unsigned number) {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   line(label, number).output = true;
 }
 
 void SimGpio::hang(const std::string& label, bool hangs) {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   wire(label)->hangs = hangs;
   moved_.notify_all();
 }
 
 int SimGpio::hanging() const {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   return hanging_;
 }
 
@@ -192,7 +192,7 @@ Result<SimGpio::Place> SimGpio::find(const GpioLineName& name) {
 }
 
 Result<GpioLineInfo> SimGpio::look(const GpioLineName& name) {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   const auto place = find(name);
   if (!place) return place.error();
   return GpioLineInfo{place->wire->name + " (" + place->wire->label + ")", place->number,
@@ -200,7 +200,7 @@ Result<GpioLineInfo> SimGpio::look(const GpioLineName& name) {
 }
 
 Result<std::unique_ptr<GpioOutput>> SimGpio::open(const GpioOutputSettings& settings) {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   const auto place = find(settings.name);
   if (!place) return place.error();
   if (!place->line->consumer.empty()) return ErrorCode::kBusy;
@@ -211,7 +211,7 @@ Result<std::unique_ptr<GpioOutput>> SimGpio::open(const GpioOutputSettings& sett
 }
 
 Result<std::unique_ptr<GpioInput>> SimGpio::open(const GpioInputSettings& settings) {
-  const Guard guard(mutex_);
+  const Locked guard(mutex_);
   const auto place = find(settings.name);
   if (!place) return place.error();
   if (!place->line->consumer.empty()) return ErrorCode::kBusy;

@@ -87,6 +87,7 @@ int ctl_status(const std::string& socket, const std::string& json) {
                 : figure.value == "1"              ? "yes"
                                                    : "no");
   }
+  for (const std::string& line : line_words(*status)) std::printf("line %s\n", line.c_str());
   return 0;
 }
 

@@ -61,6 +61,55 @@ std::string timing_json(const wire::Timing* timing) {
   return text + "}";
 }
 
+template <typename Fn>
+void each_line(const wire::Status& status, Fn fn) {
+  if (status.lines() == nullptr) return;
+  for (const wire::Line* const line : *status.lines())
+    fn(*line, std::string(view_of(line->name())));
+}
+
+struct LineMetric {
+  const char *name, *type, *help;
+  std::uint64_t (*value)(const wire::Line&);
+};
+constexpr LineMetric kLineMetrics[] = {
+    {"zoned_line_active", "gauge", "The line is active.",
+     [](const wire::Line& line) -> std::uint64_t { return line.active(); }},
+    {"zoned_line_working", "gauge", "The line is open, and its last call went well.",
+     [](const wire::Line& line) -> std::uint64_t { return line.working(); }},
+    {"zoned_line_changes_total", "counter", "Times that the line changed.",
+     [](const wire::Line& line) -> std::uint64_t { return line.changes(); }},
+    {"zoned_line_failures_total", "counter", "Calls to the line that failed.",
+     [](const wire::Line& line) -> std::uint64_t { return line.failures(); }}};
+
+std::string line_metrics(const wire::Status& status) {
+  if (status.lines() == nullptr || status.lines()->size() == 0) return {};
+  std::string text;
+  for (const LineMetric& metric : kLineMetrics) {
+    const std::string name = metric.name;
+    text += "# HELP " + name + " " + metric.help + "\n# TYPE " + name + " " + metric.type + "\n";
+    each_line(status, [&](const wire::Line& line, const std::string& line_name) {
+      text += name + "{line=" + json_quoted(line_name) + "} " + std::to_string(metric.value(line)) +
+              "\n";
+    });
+  }
+  return text + timing_metric("zoned_map_ready_latency_seconds",
+                              "From the end of a load to map_ready's line, by percentile.",
+                              status.map_ready_latency());
+}
+
+std::string lines_json(const wire::Status& status) {
+  std::string text = "{";
+  each_line(status, [&](const wire::Line& line, const std::string& name) {
+    text += (text.size() > 1 ? "," : "") + json_quoted(name) +
+            ":{\"active\":" + (line.active() ? "true" : "false") +
+            ",\"working\":" + (line.working() ? "true" : "false") +
+            ",\"changes\":" + std::to_string(line.changes()) +
+            ",\"failures\":" + std::to_string(line.failures()) + "}";
+  });
+  return text + "}";
+}
+
 // A number that JSON has; what is not finite has none.
 std::string json_real(double value) { return std::isfinite(value) ? real(value) : "null"; }
 
@@ -193,6 +242,7 @@ std::string metrics_text(const wire::Status& status) {
       timing_metric("zoned_cycle_seconds", "A cycle's own work, by percentile.", status.cycle());
   text += timing_metric("zoned_wakeup_seconds", "How late cycles begin, by percentile.",
                         status.wakeup());
+  text += line_metrics(status);
   const std::string zone(view_of(status.zone()));
   text += "# HELP zoned_zone_info The robot's own zone.\n# TYPE zoned_zone_info gauge\n";
   if (!zone.empty()) text += "zoned_zone_info{zone=" + json_quoted(zone) + "} 1\n";
@@ -211,7 +261,19 @@ std::string status_json(const wire::Status& status) {
   }
   text += ",\"cycle_us\":" + timing_json(status.cycle());
   text += ",\"wakeup_us\":" + timing_json(status.wakeup());
+  text += ",\"map_ready_latency_us\":" + timing_json(status.map_ready_latency());
+  text += ",\"lines\":" + lines_json(status);
   return text + "}\n";
+}
+
+std::vector<std::string> line_words(const wire::Status& status) {
+  std::vector<std::string> words;
+  each_line(status, [&words](const wire::Line& line, const std::string& name) {
+    words.push_back(name + (line.active() ? " active" : " inactive") +
+                    (line.working() ? "" : ", not working") + ", " +
+                    std::to_string(line.changes()) + " changes");
+  });
+  return words;
 }
 
 std::vector<std::string> complaints(const wire::Status& s) {
@@ -230,6 +292,11 @@ std::vector<std::string> complaints(const wire::Status& s) {
   } else if (!s.pose()->trusted()) {
     lines.push_back("POSE NOT TRUSTED: until two fixes agree");
   }
+  each_line(s, [&lines](const wire::Line& line, const std::string& name) {
+    if (!line.working()) {
+      lines.push_back("LINE NOT WORKING: " + name + "; see zoned run --check and its log");
+    }
+  });
   if (!s.realtime()) lines.push_back("NOT REAL-TIME: see zoned run --check");
   if (!s.memory_locked()) lines.push_back("MEMORY NOT LOCKED: see zoned run --check");
   return lines;

@@ -25,6 +25,9 @@ std::vector<Figure> figures_of(const wire::Status& status);
 std::string status_json(const wire::Status& status);
 std::string metrics_text(const wire::Status& status);
 
+// The robot's GPIO lines, one each: "map_ready active, 3 changes".
+std::vector<std::string> line_words(const wire::Status& status);
+
 // What deserves attention, one line each, the worst first: "NOT KEEPING UP: ..." Empty when all is
 // well.
 std::vector<std::string> complaints(const wire::Status& status);

@@ -9,6 +9,7 @@
 #include "platform/board.hpp"
 #include "platform/realtime.hpp"
 #include "platform/shared_memory.hpp"
+#include "runtime/live/line_requests.hpp"
 #include "runtime/live/live_source.hpp"
 #include "runtime/map/loader.hpp"
 #include "runtime/memory/shared_layout.hpp"
@@ -40,6 +41,7 @@ class Check {
       memory();
     }
     source();
+    lines();
     scheduler();
     board();
     return print();
@@ -141,6 +143,22 @@ class Check {
       rows_.push_back({Row::Kind::kWeak, name, warning, ""});
     } else {
       good(name, arguments_.source.name);
+    }
+  }
+
+  void lines() {
+    if (map_) {
+      if (const auto wrong =
+              ZoneMarkers::fault_of(map_->graph, cycle_config(inputs_.settings).markers)) {
+        refuse("zone markers", *wrong);
+      }
+    }
+    for (LineFinding& line : inspect_lines(kernel_gpio(), inputs_.settings.gpio)) {
+      if (line.fault.empty()) {
+        good(std::move(line.name), std::move(line.found));
+      } else {
+        refuse_privilege(std::move(line.name), std::move(line.fault), "");
+      }
     }
   }
 

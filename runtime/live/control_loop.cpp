@@ -87,6 +87,7 @@ void ControlLoop::step(std::uint64_t cycle, std::int64_t began_ns) noexcept {
     ports_.overload.deferred_commands += ports_.commands->size() > 0;
   }
   input.commands = {commands_.data(), commands};
+  input.edges = {edges_.data(), take_edges(input.now_ns, began_ns)};
   if (ports_.recorder != nullptr) ports_.recorder->on_inputs(cycle, input, offset_ns);
 
   const std::int64_t received_ns = monotonic_ns();
@@ -116,6 +117,16 @@ std::size_t ControlLoop::take_corrections(std::int64_t now_ns) noexcept {
   while (ports_.poses != nullptr && count < corrections_.size() &&
          ports_.poses->pop(corrections_[count])) {
     corrections_[count++].received_ns = now_ns;
+  }
+  return count;
+}
+
+// Stamped as long before the cycle's time as they happened before the cycle began.
+std::size_t ControlLoop::take_edges(std::int64_t now_ns, std::int64_t began_ns) noexcept {
+  std::size_t count = 0;
+  while (ports_.edges != nullptr && count < edges_.size() && ports_.edges->pop(edges_[count])) {
+    LineEdge& edge = edges_[count++];
+    edge.stamp_ns = now_ns - std::max<std::int64_t>(0, began_ns - edge.stamp_ns);
   }
   return count;
 }

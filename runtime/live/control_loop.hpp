@@ -55,21 +55,23 @@ struct ControlPorts {
   SpscQueue<PoseCorrection>* poses = nullptr;     // from other programs
   SpscQueue<Command>* commands = nullptr;
   SpscQueue<CommandReply>* replies = nullptr;
+  SpscQueue<LineEdge>* edges = nullptr;  // stamps by CLOCK_MONOTONIC
   InputSink* recorder = nullptr;
   Seqlock<LiveStatus>& status;
 };
 
 // The control thread: a cycle every period, on absolute times.
 //
-// Overload, each counted in OverloadCounters: frames beyond most_frames wait on the bus, commands
-// and corrections beyond the bounds below in their queues, so a cycle's work stays bounded; a cycle
-// that begins a period or more late leaves whole periods out instead of hurrying after them; a
-// queue to a slower thread that is full loses what was for it, never time. Real-time: after the
-// first cycle run() neither allocates, locks, reads files, logs nor throws.
+// Overload, each counted in OverloadCounters: frames beyond most_frames wait on the bus, commands,
+// corrections and edges of lines beyond the bounds below in their queues, so a cycle's work stays
+// bounded; a cycle that begins a period or more late leaves whole periods out instead of hurrying
+// after them; a queue to a slower thread that is full loses what was for it, never time. Real-time:
+// after the first cycle run() neither allocates, locks, reads files, logs nor throws.
 class ControlLoop {
  public:
   static constexpr std::size_t kMostCorrections = 16;
   static constexpr std::size_t kMostLoads = 4;
+  static constexpr std::size_t kMostEdges = 16;
 
   ControlLoop(const ControlSettings& settings, const ControlPorts& ports);
 
@@ -99,6 +101,7 @@ class ControlLoop {
   std::int64_t next_deadline(std::int64_t deadline_ns, std::int64_t began_ns) noexcept;
   void step(std::uint64_t cycle, std::int64_t began_ns) noexcept;
   std::size_t take_corrections(std::int64_t now_ns) noexcept;
+  std::size_t take_edges(std::int64_t now_ns, std::int64_t began_ns) noexcept;
   void answer() noexcept;
   void publish(const CycleInput& input, std::int64_t offset_ns) noexcept;
   void measure(const CycleInput& input, std::uint64_t cycle,
@@ -114,6 +117,7 @@ class ControlLoop {
   std::array<PoseCorrection, kMostCorrections> corrections_{};
   std::array<LoadResult, kMostLoads> loads_{};
   std::array<Command, Cycle::kMostCommands> commands_{};
+  std::array<LineEdge, kMostEdges> edges_{};
   Histogram wakeup_;
   Histogram work_;
   LiveStatus status_;

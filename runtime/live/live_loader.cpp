@@ -143,6 +143,8 @@ LoadResult LiveLoader::fill(const Message& message) {
   if (result.error.code != ErrorCode::kOk) {
     pool_.give_back(result.slots);
     if (result.error.code != ErrorCode::kCancelled) ++failed_loads_;
+  } else {
+    last_load_.store({request.zone, monotonic_ns()});
   }
   return result;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "platform/realtime.hpp"
+#include "platform/seqlock.hpp"
 #include "platform/spsc_queue.hpp"
 #include "platform/wakeup.hpp"
 #include "runtime/map/catalog.hpp"
@@ -48,6 +49,12 @@ class LiveLoader final : public ZoneLoader {
 
   // Of loads that were completed. Any thread.
   std::uint64_t bytes_loaded() const noexcept { return bytes_loaded_.load(); }
+  struct Loaded {
+    ZoneId zone = kNoZone;
+    std::int64_t ns = 0;  // CLOCK_MONOTONIC
+  };
+  // The load that was completed last. Any thread.
+  Loaded last_load() const noexcept { return last_load_.load(); }
   // The zone whose pack could not be loaded last, and why; any thread.
   std::uint64_t failed_loads() const noexcept { return failed_loads_.load(); }
   bool is_realtime() const noexcept { return thread_.is_realtime(); }
@@ -76,6 +83,7 @@ class LiveLoader final : public ZoneLoader {
   std::atomic<std::uint64_t> cancelled_{0};  // (zone + 1) << 32 | generation
   std::atomic<bool> stop_{false};
   std::atomic<std::uint64_t> bytes_loaded_{0};
+  Seqlock<Loaded> last_load_;
   std::atomic<std::uint64_t> failed_loads_{0};
   std::vector<SlotIndex> slots_;
   std::vector<std::byte*> places_;

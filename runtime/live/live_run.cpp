@@ -14,6 +14,7 @@
 #include "runtime/live/can_recorder.hpp"
 #include "runtime/live/control_loop.hpp"
 #include "runtime/live/event_teller.hpp"
+#include "runtime/live/live_lines.hpp"
 #include "runtime/live/live_loader.hpp"
 #include "runtime/live/live_source.hpp"
 #include "runtime/live/scribe.hpp"
@@ -60,7 +61,8 @@ struct LiveRun::Parts {
         teller(map.catalog, recording),
         recorder(map.graph, map.needs, truth, period_ns, map.limits, teller),
         scribe(notes, recorder),
-        events(notes, live_memory.served() ? &service.events : nullptr, overload) {}
+        events(notes, live_memory.served() ? &service.events : nullptr, overload),
+        lines(kernel_gpio(), run_inputs.settings.gpio) {}
 
   bool open_source(std::string& fault);
   CanBus& bus();
@@ -95,6 +97,7 @@ struct LiveRun::Parts {
   OverloadCounters overload;
   Service service;
   EventFanOut events;
+  LiveLines lines;
   Seqlock<LiveStatus> status;
   std::unique_ptr<LiveSource> source;
   std::unique_ptr<CanRecorder> can_recorder;
@@ -193,6 +196,7 @@ bool LiveRun::Parts::open_service(std::string& fault) {
   if (!zones_memory.served()) return true;
   ServeSettings settings = inputs.settings.serve;
   settings.socket = socket_path(settings);
+  service.lines = &lines.board;
   std::function<Result<std::uint64_t>(int)> dump;
   if (FlightRecorder* const flight = recording.flight()) {
     dump = [flight](int fd) -> Result<std::uint64_t> {
@@ -251,6 +255,15 @@ bool LiveRun::Parts::start_threads(std::string& fault) {
   auto started = Thread::start(for_control, options.allow_degraded, [this] { control(); });
   if (!started) return refused("realtime.priority", started.error());
   control_thread = std::move(started).value();
+  if (const auto driven = lines.start([this] { return status.load(); },
+                                      [this] {
+                                        const auto load = loader.last_load();
+                                        return LoadEnd{load.zone, load.ns};
+                                      },
+                                      control_settings().wall_period_ns);
+      !driven) {
+    return refused("gpio", driven.error());
+  }
   if (const auto serving = service.start(notifier, [this] { return loop->cycles(); }); !serving) {
     return refused("serve", serving.error());
   }
@@ -277,6 +290,12 @@ bool LiveRun::start(std::string& fault) {
   }
   const auto begun = p.shared.begin_map(static_cast<std::uint32_t>(p.map.needs.size()));
   ZP_REQUIRE(begun.ok());
+  if (const auto wrong =
+          ZoneMarkers::fault_of(p.map.graph, cycle_config(p.inputs.settings).markers)) {
+    fault = *wrong;
+    return false;
+  }
+  if (!p.lines.open(p.options.allow_degraded, fault)) return false;
   if (!p.map.pin(p.memory, fault) || !p.open_source(fault)) return false;
   p.cycle = std::make_unique<Cycle>(cycle_config(p.inputs.settings),
                                     CycleParts{p.map.graph, p.map.needs, p.map.load_s, p.map.pinned,
@@ -296,6 +315,7 @@ bool LiveRun::start(std::string& fault) {
                                          .poses = served ? &p.service.poses : nullptr,
                                          .commands = served ? &p.service.commands : nullptr,
                                          .replies = served ? &p.service.replies : nullptr,
+                                         .edges = &p.lines.inputs.edges,
                                          .recorder = p.recording.tap(),
                                          .status = p.status});
   return p.start_threads(fault);
@@ -318,6 +338,7 @@ void LiveRun::wait() {
 std::optional<RunSummary> LiveRun::finish(std::string& fault) {
   Parts& p = *parts_;
   p.control_thread.join();
+  p.lines.stop();
   (void)p.notifier.stopping();
   p.service.stop();
   if (const int error = p.lock_error.load(); error != 0 && !p.options.allow_degraded) {
@@ -366,6 +387,9 @@ std::optional<RunSummary> LiveRun::finish(std::string& fault) {
   live.cycle_us = timing_of(p.loop->work());
   live.wakeup_us = timing_of(p.loop->wakeup());
   live.lost_events = last.overload.lost_events;
+  live.ready_us = timing_of(p.lines.outputs.ready_latency());
+  live.ready_count = p.lines.outputs.ready_latency().count();
+  live.lines_not_working = p.lines.not_working();
   live.realtime = p.control_thread.is_realtime();
   live.memory_locked = p.inputs.settings.realtime.lock_memory && p.lock_error.load() == 0;
   summary.live = live;

@@ -27,7 +27,8 @@ bool Service::open(const ServeSettings& settings, const Seqlock<LiveStatus>& sta
       .lock_fd = memory.lock_fd(),
       .lease_ns = lease_ns,
       .resident_generation = [&map](ZoneId zone) { return map.generation(zone); },
-      .dump = std::move(dump)};
+      .dump = std::move(dump),
+      .lines = lines};
   server_ = Server::open(settings, ports, catalog, graph, pinned, fault);
   return server_ != nullptr;
 }

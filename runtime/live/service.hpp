@@ -33,10 +33,11 @@ class Service {
   Result<void> start(const Notifier& notifier, std::function<std::uint64_t()> cycles);
   void stop() noexcept;
 
-  SpscQueue<Event> events;          // control to server
-  SpscQueue<Command> commands;      // server to control
-  SpscQueue<CommandReply> replies;  // control to server
-  SpscQueue<PoseCorrection> poses;  // server to control
+  const LineBoard* lines = nullptr;  // told to those who ask; before open()
+  SpscQueue<Event> events;           // control to server
+  SpscQueue<Command> commands;       // server to control
+  SpscQueue<CommandReply> replies;   // control to server
+  SpscQueue<PoseCorrection> poses;   // server to control
 
  private:
   void run(const Notifier& notifier);

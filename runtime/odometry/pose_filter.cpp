@@ -47,6 +47,8 @@ const char* to_string(CorrectionVerdict verdict) noexcept {
       return "trusted";
     case Verdict::kReinitialised:
       return "reinitialised";
+    case Verdict::kReset:
+      return "reset";
     case Verdict::kOutlier:
       return "outlier";
     case Verdict::kTooOld:
@@ -59,7 +61,7 @@ const char* to_string(CorrectionVerdict verdict) noexcept {
   return "unknown";
 }
 
-bool is_used(CorrectionVerdict verdict) noexcept { return verdict <= Verdict::kReinitialised; }
+bool is_used(CorrectionVerdict verdict) noexcept { return verdict <= Verdict::kReset; }
 
 PoseFilter::PoseFilter(const PoseFilterSettings& settings)
     : settings_(settings), history_(entries_for(settings)) {}
@@ -215,30 +217,47 @@ bool PoseFilter::is_just_before_start(std::int64_t stamp_ns) const noexcept {
          seconds_between(stamp_ns, history_.at(history_.oldest()).t_ns) <= settings_.extrapolate_s;
 }
 
-CorrectionVerdict PoseFilter::correct(const PoseCorrection& fix, std::int64_t now_ns) noexcept {
-  if (!is_plausible(fix)) return count(Verdict::kInvalid);
+PoseFilter::Placed PoseFilter::find_place(const PoseCorrection& fix, std::int64_t now_ns) noexcept {
+  if (!is_plausible(fix)) return {.refused = Verdict::kInvalid};
   if (seconds_between(now_ns, fix.stamp_ns) > settings_.future_tolerance_s) {
-    return count(Verdict::kFromFuture);
+    return {.refused = Verdict::kFromFuture};
   }
   if (history_.empty()) history_.restart(fix.stamp_ns);
-  UncertainPose z = measured(fix);
-  std::uint64_t index = history_.newest();
+  Placed placed{.pose = measured(fix), .index = history_.newest()};
   if (fix.stamp_ns > history_.back().t_ns) {
     const double ahead = seconds_between(history_.back().t_ns, fix.stamp_ns);
-    z = step_back(z, motion_since_newest(ahead));
-  } else {
-    const std::optional<std::uint64_t> found = history_.find(fix.stamp_ns);
-    if (!found && !is_just_before_start(fix.stamp_ns)) return count(Verdict::kTooOld);
-    index = found.value_or(history_.oldest());
-    if (trusted_ && index < valid_from_) return count(Verdict::kTooOld);
-    if (found) {
-      split_drift(index, fix.stamp_ns);
-      z = history_.carry_to_entry(z, fix.stamp_ns, index);
-    }
+    placed.pose = step_back(placed.pose, motion_since_newest(ahead));
+    return placed;
   }
-  const Verdict verdict = trusted_ ? place(z, index) : support(z, index);
+  const std::optional<std::uint64_t> found = history_.find(fix.stamp_ns);
+  if (!found && !is_just_before_start(fix.stamp_ns)) return {.refused = Verdict::kTooOld};
+  placed.index = found.value_or(history_.oldest());
+  if (trusted_ && placed.index < valid_from_) return {.refused = Verdict::kTooOld};
+  if (found) {
+    split_drift(placed.index, fix.stamp_ns);
+    placed.pose = history_.carry_to_entry(placed.pose, fix.stamp_ns, placed.index);
+  }
+  return placed;
+}
+
+CorrectionVerdict PoseFilter::correct(const PoseCorrection& fix, std::int64_t now_ns) noexcept {
+  const Placed found = find_place(fix, now_ns);
+  if (!is_used(found.refused)) return count(found.refused);
+  const Verdict verdict =
+      trusted_ ? place(found.pose, found.index) : support(found.pose, found.index);
   list_hypotheses();
   return count(verdict);
+}
+
+CorrectionVerdict PoseFilter::reset(const PoseCorrection& fix, std::int64_t now_ns) noexcept {
+  const Placed found = find_place(fix, now_ns);
+  if (!is_used(found.refused)) return count(found.refused);
+  FixCandidates::Candidate here;
+  here.anchor = found.index;
+  here.at_anchor = found.pose;
+  adopt(here);
+  list_hypotheses();
+  return count(Verdict::kReset);
 }
 
 // Trusted: through the gate, or to the candidates.

@@ -29,6 +29,7 @@ enum class CorrectionVerdict : std::uint8_t {
   kHypothesis,     // kept as one of the places where the robot may be
   kTrusted,        // agreed with an earlier fix: the pose is trusted from here on
   kReinitialised,  // the last of a run of rejected fixes that agree: the pose was moved to them
+  kReset,          // believed without asking: the pose was moved there
   kOutlier,        // refused by the gate
   kTooOld,         // from before the history
   kFromFuture,     // stamped after now
@@ -36,7 +37,7 @@ enum class CorrectionVerdict : std::uint8_t {
 };
 const char* to_string(CorrectionVerdict verdict) noexcept;
 
-// True for the first four.
+// True for the first five.
 bool is_used(CorrectionVerdict verdict) noexcept;
 
 struct PoseFilterSettings {
@@ -92,6 +93,10 @@ class PoseFilter {
 
   CorrectionVerdict correct(const PoseCorrection& fix, std::int64_t now_ns) noexcept;
 
+  // A fix that is certain, such as a contact at a known place: the pose is moved there and trusted,
+  // whatever was believed. kReset, or a refusal for its stamp or its numbers.
+  CorrectionVerdict reset(const PoseCorrection& fix, std::int64_t now_ns) noexcept;
+
   // The pose at now_ns, carried on from the newest increment with its speed while odometry is
   // fresh.
   PoseEstimate estimate(std::int64_t now_ns) const noexcept;
@@ -113,6 +118,12 @@ class PoseFilter {
   void bridge_pause(const OdometryIncrement& increment) noexcept;
   bool is_just_before_start(std::int64_t stamp_ns) const noexcept;
   CorrectionVerdict count(CorrectionVerdict verdict) noexcept;
+  struct Placed {
+    UncertainPose pose{};                                  // of the fix, at the entry
+    std::uint64_t index = 0;                               // of the entry
+    CorrectionVerdict refused = CorrectionVerdict::kUsed;  // or why it has no place
+  };
+  Placed find_place(const PoseCorrection& fix, std::int64_t now_ns) noexcept;
   CorrectionVerdict place(const UncertainPose& fix, std::uint64_t index) noexcept;
   CorrectionVerdict support(const UncertainPose& fix, std::uint64_t index) noexcept;
   void adopt(const FixCandidates::Candidate& candidate) noexcept;

@@ -9,7 +9,7 @@
 namespace zonepack {
 namespace {
 
-constexpr std::uint8_t kHasPose = 1, kFrozen = 2;
+constexpr std::uint8_t kHasPose = 1, kFrozen = 2, kHeld = 4;
 constexpr std::size_t kFixedRoom = 256;
 constexpr std::size_t kZoneRoom = 10;  // two varints of 32 bits
 constexpr std::size_t kMostZones = (kMostBlockBytes - kFixedRoom) / kZoneRoom / 2;
@@ -38,7 +38,8 @@ std::vector<std::byte> write_checkpoint(const Checkpoint& checkpoint) {
   out.i64(checkpoint.now_ns);
   out.i64(checkpoint.start_ns);
   out.u8(static_cast<std::uint8_t>((checkpoint.has_pose ? kHasPose : 0) |
-                                   (checkpoint.frozen ? kFrozen : 0)));
+                                   (checkpoint.frozen ? kFrozen : 0) |
+                                   (checkpoint.held ? kHeld : 0)));
   out.f64(checkpoint.T_map_base.x_m);
   out.f64(checkpoint.T_map_base.y_m);
   out.f64(checkpoint.T_map_base.yaw_rad);
@@ -67,6 +68,7 @@ Result<Checkpoint> read_checkpoint(ByteSpan content) {
   const std::uint8_t flags = in.u8();
   checkpoint.has_pose = (flags & kHasPose) != 0;
   checkpoint.frozen = (flags & kFrozen) != 0;
+  checkpoint.held = (flags & kHeld) != 0;
   checkpoint.T_map_base = {in.f64(), in.f64(), in.f64()};
   checkpoint.sigma_m = in.f64();
   checkpoint.sigma_rad = in.f64();
@@ -137,6 +139,12 @@ void RunMirror::on_commands(std::span<const Command> commands) {
   }
 }
 
+void RunMirror::on_edges(std::span<const LineEdge> edges) {
+  for (const LineEdge& edge : edges) {
+    if (edge.line == LineEdge::kHold) held_ = edge.active;
+  }
+}
+
 void RunMirror::describe(Checkpoint& checkpoint) const {
   checkpoint.resident.clear();
   for (ZoneId zone = 0; zone < zones_.size(); ++zone) {
@@ -147,6 +155,7 @@ void RunMirror::describe(Checkpoint& checkpoint) const {
   checkpoint.pinned = pinned_;
   checkpoint.route = route_;
   checkpoint.frozen = frozen_;
+  checkpoint.held = held_;
 }
 
 }  // namespace zonepack

@@ -8,6 +8,7 @@
 #include "platform/base/result.hpp"
 #include "runtime/command.hpp"
 #include "runtime/event.hpp"
+#include "runtime/line_edge.hpp"
 #include "runtime/odometry/pose.hpp"
 #include "runtime/recording/bytes.hpp"
 
@@ -27,8 +28,9 @@ struct Checkpoint {
   bool has_pose = false;
   Pose2 T_map_base;
   double sigma_m = 0, sigma_rad = 0;
-  ZoneId zone = kNoZone;  // the robot's own
-  bool frozen = false;
+  ZoneId zone = kNoZone;       // the robot's own
+  bool frozen = false;         // by command
+  bool held = false;           // by the hold line
   std::vector<Held> resident;  // used longest ago first
   std::vector<ZoneId> pinned;  // asked for, beside those of the settings
   std::vector<ZoneId> route;   // the hint in force
@@ -47,8 +49,9 @@ class RunMirror {
 
   void on_event(const Event& event);
   void on_commands(std::span<const Command> commands);
+  void on_edges(std::span<const LineEdge> edges);
 
-  // Fills resident, pinned, route and frozen.
+  // Fills resident, pinned, route, frozen and held.
   void describe(Checkpoint& checkpoint) const;
 
  private:
@@ -63,6 +66,7 @@ class RunMirror {
   std::vector<ZoneId> pinned_;
   std::vector<ZoneId> route_;
   bool frozen_ = false;
+  bool held_ = false;
 };
 
 }  // namespace zonepack

@@ -7,7 +7,8 @@ namespace zonepack {
 namespace {
 
 // A new member of these must be written and read below, or a recording would not hold it.
-static_assert(sizeof(Command) == 296 && sizeof(LoadResult) == 40 && sizeof(PoseCorrection) == 64);
+static_assert(sizeof(Command) == 296 && sizeof(LoadResult) == 40 && sizeof(PoseCorrection) == 64 &&
+              sizeof(LineEdge) == 16);
 
 constexpr std::uint8_t kExtended = 1, kFd = 2, kRtr = 4, kErrorFrame = 8, kHasFlags = 16;
 constexpr std::size_t kFrameRoom = 5 + 10 + 5 + 64;
@@ -66,6 +67,14 @@ void write_commands(const CycleInput& input, ByteWriter& out) noexcept {
     const std::size_t route = std::min<std::size_t>(command.route_length, Command::kMostRoute);
     out.varint(route);
     for (std::size_t i = 0; i < route; ++i) out.varint(command.route[i]);
+  }
+}
+
+void write_edges(const CycleInput& input, ByteWriter& out) noexcept {
+  for (const LineEdge& edge : input.edges) {
+    out.varint(edge.line);
+    out.u8(edge.active ? 1 : 0);
+    out.zigzag(wrapped_sub(edge.stamp_ns, input.now_ns));
   }
 }
 
@@ -141,6 +150,26 @@ bool read_command(ByteReader& in, Command& command) {
   return in.ok();
 }
 
+bool read_edge(ByteReader& in, std::int64_t now_ns, LineEdge& edge) {
+  edge.line = in.varint32();
+  const std::uint8_t active = in.u8();
+  edge.active = active == 1;
+  edge.stamp_ns = wrapped_add(now_ns, in.zigzag());
+  return in.ok() && active <= 1;
+}
+
+bool is_known(std::uint8_t kind) {
+  switch (static_cast<RecordKind>(kind)) {
+    case RecordKind::kFrames:
+    case RecordKind::kCorrections:
+    case RecordKind::kLoads:
+    case RecordKind::kCommands:
+    case RecordKind::kEdges:
+      return true;
+  }
+  return false;
+}
+
 bool read_record(RecordKind kind, ByteReader in, RecordedInput& into) {
   switch (kind) {
     case RecordKind::kFrames: {
@@ -158,6 +187,10 @@ bool read_record(RecordKind kind, ByteReader in, RecordedInput& into) {
       return read_items(in, into.loads, kMostRecordedLoads, read_load);
     case RecordKind::kCommands:
       return read_items(in, into.commands, Cycle::kMostCommands, read_command);
+    case RecordKind::kEdges:
+      return read_items(in, into.edges, kMostRecordedEdges, [&](ByteReader& item, LineEdge& edge) {
+        return read_edge(item, into.now_ns, edge);
+      });
   }
   return false;
 }
@@ -173,6 +206,7 @@ void write_records(const CycleInput& input, ByteWriter& out) noexcept {
   write_record(RecordKind::kCorrections, !input.corrections.empty(), input, out, write_corrections);
   write_record(RecordKind::kLoads, !input.loads.empty(), input, out, write_loads);
   write_record(RecordKind::kCommands, !input.commands.empty(), input, out, write_commands);
+  write_record(RecordKind::kEdges, !input.edges.empty(), input, out, write_edges);
 }
 
 Result<void> read_records(ByteSpan records, RecordedInput& into) {
@@ -180,16 +214,14 @@ Result<void> read_records(ByteSpan records, RecordedInput& into) {
   into.corrections.clear();
   into.loads.clear();
   into.commands.clear();
+  into.edges.clear();
   ByteReader in(records);
   while (in.ok() && !in.at_end()) {
     const std::uint8_t kind = in.u8();
     const ByteSpan content = in.bytes(in.varint());
     if (!in.ok()) break;
     if (kind >= kFirstNoteKind) continue;
-    if (kind < static_cast<std::uint8_t>(RecordKind::kFrames) ||
-        kind > static_cast<std::uint8_t>(RecordKind::kCommands)) {
-      return {ErrorCode::kBadVersion, kind};
-    }
+    if (!is_known(kind)) return {ErrorCode::kBadVersion, kind};
     if (!read_record(static_cast<RecordKind>(kind), ByteReader(content), into)) {
       return ErrorCode::kBadStructure;
     }

@@ -12,7 +12,13 @@
 // What one cycle was given, as RECORDING.md lays it out under "Records".
 namespace zonepack {
 
-enum class RecordKind : std::uint8_t { kFrames = 1, kCorrections = 2, kLoads = 3, kCommands = 4 };
+enum class RecordKind : std::uint8_t {
+  kFrames = 1,
+  kCorrections = 2,
+  kLoads = 3,
+  kCommands = 4,
+  kEdges = 6,
+};
 // Records of this kind and above may be passed over by a reader that does not know them; any other
 // unknown record is an input that would be missing.
 inline constexpr std::uint8_t kFirstNoteKind = 128;
@@ -20,10 +26,11 @@ inline constexpr std::uint8_t kFirstNoteKind = 128;
 inline constexpr std::size_t kMostRecordedFrames = 4096;
 inline constexpr std::size_t kMostRecordedCorrections = 4096;
 inline constexpr std::size_t kMostRecordedLoads = 1024;
+inline constexpr std::size_t kMostRecordedEdges = 1024;
 inline constexpr std::size_t kMostCycleBytes = 512 * 1024;  // of one cycle's records
 
-// Room that the records of any cycle with so many frames, full commands and up to 64 corrections
-// and loads take.
+// Room that the records of any cycle with so many frames, full commands and up to 64 corrections,
+// loads and edges take.
 std::size_t record_room(std::uint32_t most_frames) noexcept;
 
 // Writes the records of a cycle; nothing for a cycle without input. ok() of `out` says whether they
@@ -38,8 +45,9 @@ struct RecordedInput {
   std::vector<PoseCorrection> corrections;
   std::vector<LoadResult> loads;  // slots: {0, 0, count}
   std::vector<Command> commands;
+  std::vector<LineEdge> edges;
 
-  CycleInput view() const noexcept { return {now_ns, frames, corrections, loads, commands}; }
+  CycleInput view() const noexcept { return {now_ns, frames, corrections, loads, commands, edges}; }
 };
 
 // Replaces all but now_ns, to which stamps are relative. kBadStructure for what write_records does

@@ -41,6 +41,7 @@ void InputWriter::take(const TappedCycle& cycle, std::int64_t now_ns) {
     input_.now_ns = cycle.head.now_ns;
     ZP_REQUIRE(read_records(cycle.records, input_));
     mirror_.on_commands(input_.commands);
+    mirror_.on_edges(input_.edges);
   }
   if (block_.full()) end_block();
 }

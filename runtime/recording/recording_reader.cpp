@@ -26,9 +26,12 @@ bool has_sane_times(const RecordedInput& input) {
   return is_time(input.now_ns) &&
          std::ranges::all_of(input.frames,
                              [](const CanFrame& frame) { return is_time(frame.stamp_ns); }) &&
-         std::ranges::all_of(input.corrections, [](const PoseCorrection& fix) {
-           return is_time(fix.stamp_ns) && is_time(fix.received_ns);
-         });
+         std::ranges::all_of(input.corrections,
+                             [](const PoseCorrection& fix) {
+                               return is_time(fix.stamp_ns) && is_time(fix.received_ns);
+                             }) &&
+         std::ranges::all_of(input.edges,
+                             [](const LineEdge& edge) { return is_time(edge.stamp_ns); });
 }
 
 }  // namespace

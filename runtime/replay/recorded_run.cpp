@@ -43,6 +43,7 @@ class Run {
   bool answers(const RecordedInput& input, std::string& fault);
   bool take_loads(const RecordedInput& input, std::string& fault);
   void take_commands(const RecordedInput& input);
+  std::span<const LineEdge> take_edges(const RecordedInput& input);
   std::optional<RecordedRunResult> result(const std::string& events_path, std::string& fault);
 
   RecordingReader& recording_;
@@ -58,6 +59,8 @@ class Run {
   std::vector<LoadResult> loads_;  // of the cycle
   std::vector<Command> commands_;  // of the cycle
   std::vector<Command> waiting_;   // for the cycles to come
+  std::vector<LineEdge> edges_;    // of the cycle
+  bool held_ = false;              // by the checkpoint, until the first cycle
   std::uint64_t frames_ = 0;
   ByteCount bytes_loaded_ = 0;
 };
@@ -90,6 +93,7 @@ void Run::go_on_from(const Checkpoint& checkpoint) {
     command.kind = kind;
     command.zone = zone;
   };
+  held_ = checkpoint.held;
   if (checkpoint.frozen) add(Command::Kind::kFreeze, kNoZone);
   if (!checkpoint.route.empty()) {
     add(Command::Kind::kRouteHint, kNoZone);
@@ -145,11 +149,20 @@ void Run::take_commands(const RecordedInput& input) {
   waiting_.erase(waiting_.begin(), end);
 }
 
+std::span<const LineEdge> Run::take_edges(const RecordedInput& input) {
+  edges_.clear();
+  if (held_) edges_.push_back({input.now_ns, LineEdge::kHold, true});
+  held_ = false;
+  edges_.insert(edges_.end(), input.edges.begin(), input.edges.end());
+  return edges_;
+}
+
 bool Run::run_cycles(std::string& fault) {
   while (const RecordedInput* const recorded = recording_.next()) {
     if (!take_loads(*recorded, fault)) return false;
     take_commands(*recorded);
-    cycle_.run({recorded->now_ns, recorded->frames, recorded->corrections, loads_, commands_});
+    cycle_.run({recorded->now_ns, recorded->frames, recorded->corrections, loads_, commands_,
+                take_edges(*recorded)});
     frames_ += recorded->frames.size();
     recorder_.after_cycle(record_of(recorded->now_ns, cycle_.state(), memory_));
   }

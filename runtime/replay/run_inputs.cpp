@@ -78,6 +78,16 @@ CycleConfig cycle_config(const Settings& settings) {
   config.filter = settings.pose;
   config.tracker = settings.zones;
   config.preload = settings.preload;
+  if (const auto& dock = settings.gpio.dock) {
+    const DockPlace& at = dock->place;
+    config.dock =
+        CycleConfig::Dock{{at.x_m, at.y_m, wrap_angle(at.yaw_rad)}, at.sigma_m, at.sigma_rad};
+  }
+  for (const GpioSettings::Marker& marker : settings.gpio.markers) {
+    const std::vector<std::string>& zones = marker.place.zones;
+    config.markers.push_back(
+        {marker.name, zones.front(), zones.size() > 1 ? zones[1] : "", marker.place.reach_m});
+  }
   return config;
 }
 

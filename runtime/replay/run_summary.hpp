@@ -27,6 +27,9 @@ struct LiveFigures {
   std::uint64_t missed_deadlines = 0;
   Timing cycle_us;   // the cycle's own work
   Timing wakeup_us;  // begun after its deadline
+  Timing ready_us;   // from the end of a load to map_ready, of loads that it waited for
+  std::uint64_t ready_count = 0;
+  std::uint64_t lines_not_working = 0;  // GPIO lines, at the end
   std::uint64_t lost_events = 0;
   bool realtime = false;
   bool memory_locked = false;

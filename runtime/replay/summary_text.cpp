@@ -73,6 +73,9 @@ void add_live(JsonObject& json, const LiveFigures& live) {
   json.add("missed_deadlines", live.missed_deadlines);
   json.add("cycle_us", timing_json(live.cycle_us));
   json.add("wakeup_us", timing_json(live.wakeup_us));
+  json.add("map_ready_latency_us", timing_json(live.ready_us));
+  json.add("map_ready_latency_count", live.ready_count);
+  json.add("lines_not_working", live.lines_not_working);
   json.add("lost_events", live.lost_events);
   json.add("realtime", live.realtime ? "true" : "false");
   json.add("memory_locked", live.memory_locked ? "true" : "false");
@@ -152,9 +155,13 @@ std::string summary_table(const RunSummary& s) {
                               count(s.live->missed_deadlines) + " missed deadlines");
     row("cycle", timing(s.live->cycle_us));
     row("wake-up", timing(s.live->wakeup_us));
-    if (!s.live->realtime || !s.live->memory_locked) {
+    if (s.live->ready_count > 0) row("load to map_ready", timing(s.live->ready_us));
+    if (!s.live->realtime || !s.live->memory_locked || s.live->lines_not_working > 0) {
       row("DEGRADED", std::string(s.live->realtime ? "" : "not real-time ") +
-                          (s.live->memory_locked ? "" : "memory not locked"));
+                          (s.live->memory_locked ? "" : "memory not locked ") +
+                          (s.live->lines_not_working == 0
+                               ? ""
+                               : count(s.live->lines_not_working) + " lines not working"));
     }
   }
   return text;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/event.hpp"
+#include "runtime/live/line_board.hpp"
 #include "runtime/live/live_status.hpp"
 #include "runtime/serve/messages.hpp"
 #include "runtime/serve/served_map.hpp"
@@ -32,7 +33,8 @@ struct ServerCounters {
 using Message = std::span<const std::byte>;
 
 Message answer_status(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
-                      const LiveStatus& status, const ServerCounters& counters);
+                      const LiveStatus& status, const ServerCounters& counters,
+                      const LineBoard* lines = nullptr);
 Message answer_zones(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
                      std::uint32_t first);
 Message answer_zone(MessageBuilder& to, std::uint64_t id, const ServedMap& map, ZoneId zone);

@@ -125,8 +125,8 @@ bool RequestHandler::look(const Call& call) {
   MessageBuilder message;
   switch (request.body_type()) {
     case RequestBody::AskStatus:
-      call.from.answer(
-          answer_status(message, call.id(), call.map, ports_.status.load(), counters_));
+      call.from.answer(answer_status(message, call.id(), call.map, ports_.status.load(), counters_,
+                                     ports_.lines));
       return true;
     case RequestBody::AskZones:
       call.from.answer(

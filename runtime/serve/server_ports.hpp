@@ -9,6 +9,7 @@
 #include "platform/spsc_queue.hpp"
 #include "runtime/command.hpp"
 #include "runtime/event.hpp"
+#include "runtime/live/line_board.hpp"
 #include "runtime/live/live_status.hpp"
 #include "runtime/odometry/pose_filter.hpp"
 #include "runtime/serve/zone_table.hpp"
@@ -37,6 +38,8 @@ struct ServerPorts {
   // Writes the recording of the last minutes to a descriptor and returns its bytes. May take long;
   // called in a thread of its own. Empty: there is no recording.
   std::function<Result<std::uint64_t>(int fd)> dump{};
+
+  const LineBoard* lines = nullptr;  // of the robot; null: none
 };
 
 }  // namespace zonepack

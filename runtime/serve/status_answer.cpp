@@ -93,10 +93,23 @@ void add_server(wire::StatusBuilder& to, const ServedMap& map, const ServerCount
   to.add_events_undelivered_total(counters.events_undelivered);
 }
 
+using LineRows = flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<wire::Line>>>;
+
+LineRows line_rows(flatbuffers::FlatBufferBuilder& builder, const LineBoard& board) {
+  std::vector<flatbuffers::Offset<wire::Line>> rows;
+  for (const LineRow& row : board.rows()) {
+    rows.push_back(wire::CreateLine(builder, builder.CreateString(row.name), row.output,
+                                    row.working.load(), row.active.load(), row.changes.load(),
+                                    row.failures.load()));
+  }
+  return builder.CreateVector(rows);
+}
+
 }  // namespace
 
 Message answer_status(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
-                      const LiveStatus& status, const ServerCounters& counters) {
+                      const LiveStatus& status, const ServerCounters& counters,
+                      const LineBoard* board) {
   flatbuffers::FlatBufferBuilder& builder = to.builder();
   const auto pose = pose_report(builder, status);
   const bool somewhere = status.state.zone < map.catalog.zones.size();
@@ -104,12 +117,17 @@ Message answer_status(MessageBuilder& to, std::uint64_t id, const ServedMap& map
       builder.CreateString(somewhere ? map.catalog.zones[status.state.zone].name : std::string());
   const auto step = builder.CreateString(to_string(status.worst.step));
   const wire::Timing wakeup = timing(status.wakeup), cycle = timing(status.cycle);
+  const auto lines = board != nullptr ? line_rows(builder, *board) : LineRows();
+  const wire::Timing ready =
+      timing(board != nullptr ? board->ready_latency.load() : TimingFigures());
   wire::StatusBuilder body(builder);
   body.add_pose(pose);
   body.add_zone(zone);
   body.add_worst_step(step);
   body.add_wakeup(&wakeup);
   body.add_cycle(&cycle);
+  body.add_lines(lines);
+  body.add_map_ready_latency(&ready);
   add_run(body, status);
   add_memory(body, status);
   add_overload(body, status.overload);

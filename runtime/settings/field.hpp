@@ -20,7 +20,8 @@ struct Field {
                    bool Section::*, std::string Section::*, std::vector<std::string> Section::*,
                    std::optional<ByteCount> Section::*, PayloadChoice Section::*,
                    OdometryModel Section::*, WheelUnit Section::*, ByteOrder Section::*,
-                   SignalType Section::*, ReadMode Section::*>;
+                   SignalType Section::*, ReadMode Section::*, GpioBias Section::*,
+                   SafeLevel Section::*>;
   const char* key;
   Member member;
   double least;
@@ -58,6 +59,15 @@ struct EnumWords<SignalType> {
 template <>
 struct EnumWords<ReadMode> {  // kCached is for tools
   static constexpr const char* kWords[] = {"direct", "mapped", "buffered"};
+};
+
+template <>
+struct EnumWords<GpioBias> {
+  static constexpr const char* kWords[] = {"as-is", "none", "pull-up", "pull-down"};
+};
+template <>
+struct EnumWords<SafeLevel> {
+  static constexpr const char* kWords[] = {"usual", "active", "inactive"};
 };
 
 // A signal as it stands in the file; defaults out of range must be given.
@@ -106,5 +116,10 @@ const Fields<ServeSettings>& serve_fields();
 const Fields<RealtimeSettings>& realtime_fields();
 const Fields<RecorderSettings>& recorder_fields();
 const Fields<StateSettings>& state_fields();
+const Fields<GpioSettings>& gpio_fields();
+const Fields<OutputLine>& output_line_fields();
+const Fields<InputLine>& input_line_fields();
+const Fields<DockPlace>& dock_fields();      // keys of gpio.dock, too
+const Fields<MarkerPlace>& marker_fields();  // keys of gpio.zone_markers.NAME, too
 
 }  // namespace zonepack

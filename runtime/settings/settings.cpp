@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "runtime/settings/field.hpp"
+#include "runtime/settings/gpio_section.hpp"
 #include "runtime/settings/odometry_section.hpp"
 #include "runtime/settings/yaml_section.hpp"
 
@@ -68,6 +69,7 @@ void read_file(const YAML::Node& root, const std::string& path, Settings& settin
   read_section(file, "realtime", realtime_fields(), settings.realtime, faults);
   read_section(file, "recorder", recorder_fields(), settings.recorder, faults);
   read_section(file, "state", state_fields(), settings.state, faults);
+  read_gpio(file, settings.gpio, faults);
   file.finish();
   check_together(settings, faults);
   for (std::string* const folder : {&settings.map.path, &settings.state.folder}) {

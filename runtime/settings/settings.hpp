@@ -14,6 +14,7 @@
 #include "runtime/odometry/wheel_odometry.hpp"
 #include "runtime/pack_format/chunk_view.hpp"
 #include "runtime/serve/serve_settings.hpp"
+#include "runtime/settings/gpio_settings.hpp"
 #include "runtime/zones/preload.hpp"
 #include "runtime/zones/tracker.hpp"
 
@@ -121,6 +122,7 @@ struct Settings {
   RealtimeSettings realtime;
   RecorderSettings recorder;
   StateSettings state;
+  GpioSettings gpio;
 };
 
 struct LoadedSettings {

@@ -105,7 +105,24 @@ std::string settings_reference() {
          rows(pose_fields()) + head("zones") + rows(zones_fields()) + head("preload") +
          rows(preload_fields()) + head("cycle") + rows(cycle_fields()) + head("realtime") +
          rows(realtime_fields()) + head("recorder") + rows(recorder_fields()) + head("state") +
-         rows(state_fields()) + head("serve") + rows(serve_fields());
+         rows(state_fields()) + head("serve") + rows(serve_fields()) + head("gpio") +
+         rows(gpio_fields()) +
+         "| map_ready | an output | none | active while the pose is trusted and the robot's zone "
+         "in "
+         "memory: motion may go on. Valid only while heartbeat toggles |\n"
+         "| fault | an output | none | active while control cycles stand, odometry is missing, or "
+         "a "
+         "zone that is needed is not in memory |\n"
+         "| heartbeat | an output | none | toggles: for an external watchdog |\n"
+         "| dock | an input | none | a contact at a known pose: the pose is reset to it, and "
+         "trusted |\n"
+         "| hold | an input | none | while active nothing is evicted |\n"
+         "| zone_markers | inputs by name | none | doors or beacons that confirm a change of zone "
+         "|\n" +
+         head("gpio.map_ready, gpio.fault, gpio.heartbeat") + rows(output_line_fields()) +
+         head("gpio.dock, gpio.hold, gpio.zone_markers.NAME") + rows(input_line_fields()) +
+         head("gpio.dock") + rows(dock_fields()) + head("gpio.zone_markers.NAME") +
+         rows(marker_fields());
 }
 
 }  // namespace zonepack

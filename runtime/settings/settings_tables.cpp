@@ -275,6 +275,65 @@ const Fields<StateSettings>& state_fields() {
   return fields;
 }
 
+const Fields<GpioSettings>& gpio_fields() {
+  using S = GpioSettings;
+  static const Fields<S> fields = {
+      {"heartbeat_period", &S::heartbeat_s, 0.02, 10, "s",
+       "of the heartbeat's square wave, which goes on only while control cycles do and the other "
+       "outputs could be set"},
+  };
+  return fields;
+}
+
+const Fields<OutputLine>& output_line_fields() {
+  using S = OutputLine;
+  static const Fields<S> fields = {
+      {"chip", &S::chip, 0, 0, "", "label, name (gpiochip0) or file (/dev/gpiochip0); needed"},
+      {"line", &S::line, 0, 0, "", "number or name; needed"},
+      {"active_low", &S::active_low, 0, 0, "", "active is a low voltage"},
+      {"safe", &S::safe, 0, 0, "",
+       "while no zoned drives it, and from the start until it is known better; usual is active for "
+       "fault, inactive for the others"},
+  };
+  return fields;
+}
+
+const Fields<InputLine>& input_line_fields() {
+  using S = InputLine;
+  static const Fields<S> fields = {
+      {"chip", &S::chip, 0, 0, "", "as of an output; needed"},
+      {"line", &S::line, 0, 0, "", "number or name; needed"},
+      {"active_low", &S::active_low, 0, 0, "",
+       "active is a low voltage, as of a contact to ground"},
+      {"bias", &S::bias, 0, 0, "", "the chip's own resistor"},
+      {"debounce", &S::debounce_s, 0, 10, "s", "a level counts once it has lasted so long"},
+  };
+  return fields;
+}
+
+const Fields<DockPlace>& dock_fields() {
+  using S = DockPlace;
+  static const Fields<S> fields = {
+      {"x", &S::x_m, -1e6, 1e6, "m", "where base_link stands in the map when the contact closes"},
+      {"y", &S::y_m, -1e6, 1e6, "m", "the same"},
+      {"yaw", &S::yaw_rad, -7, 7, "rad", "the same"},
+      {"sigma", &S::sigma_m, 1e-4, 10, "m", "how sure that is"},
+      {"sigma_yaw", &S::sigma_rad, 1e-4, 3, "rad", "the same for the heading"},
+  };
+  return fields;
+}
+
+const Fields<MarkerPlace>& marker_fields() {
+  using S = MarkerPlace;
+  static const Fields<S> fields = {
+      {"zones", &S::zones, 0, 0, "",
+       "the two on the sides of the door that it marks, or the one that it lies in; needed"},
+      {"reach", &S::reach_m, 0.01, 100, "m",
+       "beside three sigma: believed when the pose is so near to the portal"},
+  };
+  return fields;
+}
+
 const Fields<ServeSettings>& serve_fields() {
   using S = ServeSettings;
   static const Fields<S> fields = {

@@ -243,6 +243,15 @@ std::string YamlSection::parse(const YAML::Node& node, double, double, const cha
   return parse_word(node, value);
 }
 
+std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                               GpioBias& value) {
+  return parse_word(node, value);
+}
+std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                               SafeLevel& value) {
+  return parse_word(node, value);
+}
+
 std::string number_text(double value) {
   const double size = std::abs(value);
   const bool handy = size == 0 || (size >= 1e-4 && size < 1e10);

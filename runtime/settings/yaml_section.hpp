@@ -92,6 +92,8 @@ class YamlSection {
   static std::string parse(const YAML::Node&, double, double, const char*, ByteOrder&);
   static std::string parse(const YAML::Node&, double, double, const char*, SignalType&);
   static std::string parse(const YAML::Node&, double, double, const char*, ReadMode&);
+  static std::string parse(const YAML::Node&, double, double, const char*, GpioBias&);
+  static std::string parse(const YAML::Node&, double, double, const char*, SafeLevel&);
 
   std::string path_;
   FaultList& faults_;

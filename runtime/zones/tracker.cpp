@@ -23,6 +23,22 @@ bool ZoneTracker::portal_leads_to(ZoneId to, Point2 point, double reach_m) const
   });
 }
 
+void ZoneTracker::confirm(ZoneId zone, double reach_m) noexcept {
+  if (zone != zone_) {
+    confirmed_from_ = zone_;
+    confirmed_reach_m_ = reach_m;
+    zone_ = zone;
+  }
+  restart_ = false;
+}
+
+bool ZoneTracker::keeps_confirmed(Point2 point, double sigma_m) noexcept {
+  if (confirmed_from_ == kNoZone) return false;
+  if (portal_leads_to(confirmed_from_, point, confirmed_reach_m_ + 3 * sigma_m)) return true;
+  confirmed_from_ = kNoZone;
+  return false;
+}
+
 bool ZoneTracker::update(const PoseEstimate& pose) noexcept {
   if (!pose.valid) return false;
   const Point2 point{pose.T_map_base.x_m, pose.T_map_base.y_m};
@@ -38,10 +54,14 @@ bool ZoneTracker::update(const PoseEstimate& pose) noexcept {
     return zone_ != before;
   }
   pose_zone_ = zone_;
-  if (side_of(graph_.polygon(zone_), point) != Side::kOutside) return false;
+  if (side_of(graph_.polygon(zone_), point) != Side::kOutside) {
+    confirmed_from_ = kNoZone;
+    return false;
+  }
   const ZoneId other = graph_.zone_at(point);
   if (other == kNoZone) return false;
   pose_zone_ = other;
+  if (keeps_confirmed(point, sigma_m)) return false;
   const double depth_m = graph_.depth_m(other, point);
   const bool through_portal = portal_leads_to(other, point, depth_m + 3 * sigma_m + kPortalSlack_m);
   const double needed_m = through_portal

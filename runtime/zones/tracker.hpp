@@ -32,7 +32,15 @@ class ZoneTracker {
   bool update(const PoseEstimate& pose) noexcept;
 
   // Forgets where the robot was: the next pose decides alone, as after re-initialisation.
-  void restart() noexcept { restart_ = true; }
+  void restart() noexcept {
+    restart_ = true;
+    confirmed_from_ = kNoZone;
+  }
+
+  // Somebody saw the robot pass into `zone`, from the zone it was in: believed against a pose that
+  // lags behind, until the pose is inside too, or more than reach_m plus three sigma from the
+  // portals between the two.
+  void confirm(ZoneId zone, double reach_m) noexcept;
 
   // kNoZone before the first valid pose in or near a zone.
   ZoneId zone() const noexcept { return zone_; }
@@ -42,6 +50,7 @@ class ZoneTracker {
   ZoneId pose_zone() const noexcept { return pose_zone_; }
 
  private:
+  bool keeps_confirmed(Point2 point, double sigma_m) noexcept;
   bool portal_leads_to(ZoneId to, Point2 point, double reach_m) const noexcept;
 
   const ZoneGraph& graph_;
@@ -49,6 +58,8 @@ class ZoneTracker {
   ZoneId zone_ = kNoZone;
   ZoneId pose_zone_ = kNoZone;
   bool restart_ = true;
+  ZoneId confirmed_from_ = kNoZone;  // of a confirmed zone that the pose has not reached
+  double confirmed_reach_m_ = 0;
 };
 
 }  // namespace zonepack

@@ -60,8 +60,8 @@ MarkerVerdict ZoneMarkers::pass(std::size_t marker, const PoseEstimate& pose,
   const Point2 point{pose.T_map_base.x_m, pose.T_map_base.y_m};
   const double reach_m = passed.reach_m + 3 * position_sigma_m(pose.covariance);
   if (!passed.door) {
-    const bool there = current == passed.zone ||
-                       near_exit(current, passed.zone, point, reach_m) != nullptr;
+    const bool there =
+        current == passed.zone || near_exit(current, passed.zone, point, reach_m) != nullptr;
     return there ? MarkerVerdict{passed.zone} : MarkerVerdict{.refused = "elsewhere"};
   }
   if (current != passed.zone && current != passed.other) return {.refused = "elsewhere"};

@@ -59,19 +59,3 @@ if(TARGET zonectl)
   add_test(NAME system/zonectl
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/serve/zonectl_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 endif()
-
-# CAN interfaces of the kernel: says so where it has none; run on the virtual robot.
-add_executable(can_bus_contract ${CMAKE_CURRENT_LIST_DIR}/can/can_bus_contract.cpp)
-zonepack_settings(can_bus_contract)
-target_link_libraries(can_bus_contract PRIVATE zonepack_test_support zonepack_platform GTest::gtest
-                      GTest::gtest_main)
-add_test(NAME system/can_bus_contract COMMAND can_bus_contract)
-set_tests_properties(system/can_bus_contract PROPERTIES SKIP_REGULAR_EXPRESSION "NOT TESTED")
-
-# The same for GPIO lines.
-add_executable(gpio_line_contract ${CMAKE_CURRENT_LIST_DIR}/gpio/gpio_line_contract.cpp)
-zonepack_settings(gpio_line_contract)
-target_link_libraries(gpio_line_contract PRIVATE zonepack_test_support zonepack_gpio GTest::gtest
-                      GTest::gtest_main)
-add_test(NAME system/gpio_line_contract COMMAND gpio_line_contract)
-set_tests_properties(system/gpio_line_contract PROPERTIES SKIP_REGULAR_EXPRESSION "NOT TESTED")

@@ -259,5 +259,43 @@ TEST(PoseFilter, CarriesSidewaysMotionOnToNow) {
   EXPECT_EQ(filter.estimate(3000 * kMs).sideways_m_s, 0);
 }
 
+TEST(PoseFilter, AResetIsBelievedAtOnceWhereverItLeads) {
+  Drive drive;
+  drive.steps(5);
+  EXPECT_EQ(drive.filter.reset(drive.fix(drive.now()), drive.now()), Verdict::kReset);
+  EXPECT_TRUE(drive.filter.estimate(drive.now()).trusted);
+  EXPECT_LT(drive.error_m(), 1e-9);
+  drive.steps(50);
+  EXPECT_EQ(drive.filter.reset(drive.fix(drive.now(), 20, 0), drive.now()), Verdict::kReset);
+  EXPECT_TRUE(drive.filter.estimate(drive.now()).trusted);
+  EXPECT_NEAR(drive.error_m(), 20, 1e-9);
+  EXPECT_EQ(drive.filter.hypotheses().size(), 1u);
+  EXPECT_EQ(drive.filter.counters().used, 2u);
+}
+
+TEST(PoseFilter, AResetActsAtItsStampAndOdometrySinceGoesOn) {
+  Drive drive;
+  drive.trust();
+  const std::int64_t contact_ns = drive.now();
+  drive.steps(20);  // 0.4 m later
+  EXPECT_EQ(drive.filter.reset(drive.fix(contact_ns), drive.now()), Verdict::kReset);
+  EXPECT_LT(drive.error_m(), 1e-9);
+  drive.steps(300);
+  EXPECT_EQ(drive.filter.reset(drive.fix(contact_ns), drive.now()), Verdict::kTooOld);
+  PoseCorrection wrong = drive.fix(drive.now());
+  wrong.sigma_x_m = kNan;
+  EXPECT_EQ(drive.filter.reset(wrong, drive.now()), Verdict::kInvalid);
+  EXPECT_LT(drive.error_m(), 1e-9);
+}
+
+TEST(PoseFilter, AfterAResetOtherFixesMeetItsGate) {
+  Drive drive;
+  drive.trust();
+  drive.filter.reset(drive.fix(drive.now()), drive.now());
+  drive.steps(10);
+  EXPECT_EQ(drive.correct_now(1, 0), Verdict::kOutlier);
+  EXPECT_EQ(drive.correct_now(), Verdict::kUsed);
+}
+
 }  // namespace
 }  // namespace zonepack

@@ -48,7 +48,8 @@ class CycleTest : public testing::Test, public EventSink {
                {&frame, with_frame ? 1u : 0u},
                fixes,
                {loads.data(), load_count},
-               std::exchange(commands, {})});
+               std::exchange(commands, {}),
+               std::exchange(edges, {})});
     allocations += allocated.count();
   }
 
@@ -101,7 +102,13 @@ class CycleTest : public testing::Test, public EventSink {
   const std::vector<float> load_s = std::vector<float>(3, 0.12f);
   Residency memory{3, {800, 0, 100, 0, {8, 20}, 0}};
   ModelledLoader loader{8, work, {1000, 1000}, nullptr};
-  Cycle cycle{testing_support::sample_robot(), {graph, needs, load_s, {}, memory, loader, *this}};
+  static CycleConfig robot() {
+    CycleConfig config = testing_support::sample_robot();
+    config.dock = CycleConfig::Dock{{10, 2, 0}, 0.02, 0.02};
+    config.markers = {{"door", "a", "b", 0.5}};
+    return config;
+  }
+  Cycle cycle{robot(), {graph, needs, load_s, {}, memory, loader, *this}};
   Command command(Command::Kind kind, ZoneId zone = kNoZone) {
     Command made;
     made.kind = kind;
@@ -117,7 +124,14 @@ class CycleTest : public testing::Test, public EventSink {
     return cycle.replies()[0];
   }
 
+  // One cycle that takes a change of a line, as old as told.
+  void edge(std::uint32_t line, bool active, std::int64_t age_ns = 0) {
+    edges = {{now_ns + kPeriod_ns - age_ns, line, active}};
+    step();
+  }
+
   std::vector<Command> commands;
+  std::vector<LineEdge> edges;
   std::uint64_t last_id = 0;
   std::vector<Event> events;
   std::size_t allocations = 0;
@@ -252,6 +266,84 @@ TEST_F(CycleTest, StampsEventsWithTheTimeSinceTheFirstCycle) {
   EXPECT_EQ(events.back().kind, EventKind::kEnd);
   EXPECT_EQ(events.back().t_ns, static_cast<std::int64_t>(events.back().cycle) * kPeriod_ns);
   EXPECT_EQ(events.back().x_mm, 2000);
+}
+
+TEST_F(CycleTest, TheDocksContactPlacesTheRobotAtOnce) {
+  trust(2, 2);
+  events.clear();
+  edge(LineEdge::kDock, true);
+  EXPECT_TRUE(cycle.state().pose.trusted);
+  EXPECT_NEAR(cycle.state().pose.T_map_base.x_m, 10, 1e-9);
+  EXPECT_EQ(cycle.state().zone, 2u);
+  EXPECT_EQ(events[0].kind, EventKind::kDocked);
+  EXPECT_EQ(events[0].x_mm, 10000);
+  stand(20);
+  EXPECT_TRUE(cycle.state().map_ready);
+  edge(LineEdge::kDock, false);
+  EXPECT_EQ(events.back().kind, EventKind::kUndocked);
+  EXPECT_EQ(cycle.state().zone, 2u);
+}
+
+TEST_F(CycleTest, TheDockIsEnoughToTrustAPoseThatNobodyKnew) {
+  step();
+  edge(LineEdge::kDock, true);
+  EXPECT_TRUE(cycle.state().pose.trusted);
+  stand(20);
+  EXPECT_TRUE(cycle.state().map_ready);
+}
+
+TEST_F(CycleTest, AContactFromBeforeTheHistoryMovesNothing) {
+  trust(2, 2);
+  edge(LineEdge::kDock, true, 60'000'000'000);
+  EXPECT_EQ(cycle.state().zone, 0u);
+  EXPECT_STREQ(events.back().reason, "too_old");
+}
+
+TEST_F(CycleTest, TheHoldLineFreezesEvictionBesideTheCommand) {
+  trust(2, 2);
+  drive(2.5);  // a and b fill the memory
+  edge(LineEdge::kHold, true);
+  drive(4.0);
+  EXPECT_TRUE(memory.resident(0));
+  EXPECT_TRUE(cycle.state().blocked);
+  ask(command(Command::Kind::kFreeze));
+  edge(LineEdge::kHold, false);
+  stand(30);
+  EXPECT_TRUE(memory.resident(0));  // still frozen by command
+  ask(command(Command::Kind::kUnfreeze));
+  stand(30);
+  EXPECT_TRUE(memory.resident(2));
+  EXPECT_THAT(words(), Contains("hold_begun"));
+  EXPECT_THAT(words(), Contains("hold_ended"));
+}
+
+TEST_F(CycleTest, AMarkerMovesTheRobotThroughItsDoorBeforeThePoseDoes) {
+  trust(2, 2);
+  drive(1.75);  // at 3.75: a quarter of a metre before the door
+  EXPECT_EQ(cycle.state().zone, 0u);
+  events.clear();
+  left_mm += 10, right_mm += 10;
+  edge(LineEdge::kFirstMarker, true);
+  EXPECT_EQ(cycle.state().zone, 1u);
+  EXPECT_EQ(cycle.state().zone_switches, 1u);
+  EXPECT_THAT(words(), Contains("zone_confirmed b"));
+  EXPECT_THAT(words(), Contains("zone_entered b"));
+  events.clear();
+  drive(1.0);
+  EXPECT_EQ(cycle.state().zone, 1u);
+  EXPECT_EQ(cycle.state().zone_switches, 1u);
+  edge(LineEdge::kFirstMarker, false);
+  EXPECT_THAT(words(), Not(Contains("zone_entered a")));
+}
+
+TEST_F(CycleTest, AMarkerElsewhereIsIgnoredAndSaysWhy) {
+  trust(2, 2);
+  events.clear();
+  edge(LineEdge::kFirstMarker, true);
+  EXPECT_THAT(words(), ElementsAre("marker_ignored"));
+  EXPECT_STREQ(events[0].reason, "elsewhere");
+  edge(LineEdge::kFirstMarker + 9, true);  // no such marker
+  EXPECT_EQ(events.size(), 1u);
 }
 
 }  // namespace

@@ -80,5 +80,32 @@ TEST_F(Tracker, BelievesThePoseAloneAfterARestart) {
   EXPECT_EQ(tracker.zone(), 2u);
 }
 
+TEST_F(Tracker, ConfirmedBehindADoorIsBelievedAgainstAPoseThatLags) {
+  tracker.update(pose_at(3, 2));
+  tracker.confirm(1, 1.0);
+  EXPECT_EQ(tracker.zone(), 1u);
+  EXPECT_FALSE(tracker.update(pose_at(3.5, 2)));  // half a metre behind: without it, back in a
+  EXPECT_EQ(tracker.zone(), 1u);
+  EXPECT_EQ(tracker.pose_zone(), 0u);
+  EXPECT_FALSE(tracker.update(pose_at(4.3, 2)));  // arrived: from here on the pose alone decides
+  EXPECT_TRUE(tracker.update(pose_at(3.5, 2)));
+  EXPECT_EQ(tracker.zone(), 0u);
+}
+
+TEST_F(Tracker, ConfirmedIsGivenUpWhenThePoseGoesAwayFromTheDoor) {
+  tracker.update(pose_at(3, 2));
+  tracker.confirm(1, 1.0);
+  EXPECT_FALSE(tracker.update(pose_at(2.95, 2)));  // 1.05 m; 1 m and three times 3 cm
+  EXPECT_TRUE(tracker.update(pose_at(2.9, 2)));
+  EXPECT_EQ(tracker.zone(), 0u);
+}
+
+TEST_F(Tracker, ConfirmingItsOwnZoneChangesNothing) {
+  tracker.update(pose_at(3, 2));
+  tracker.confirm(0, 1.0);
+  EXPECT_TRUE(tracker.update(pose_at(4.06, 2)));
+  EXPECT_EQ(tracker.zone(), 1u);
+}
+
 }  // namespace
 }  // namespace zonepack

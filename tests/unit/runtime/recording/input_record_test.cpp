@@ -51,13 +51,16 @@ struct Everything {
     commands[1].kind = Command::Kind::kRouteHint;
     commands[1].route_length = Command::kMostRoute;
     commands[1].route.fill(9);
+    edges = {{990, LineEdge::kDock, true},
+             {std::numeric_limits<std::int64_t>::min(), 0xFFFFFFFF, false}};
   }
-  CycleInput input() const { return {1000, frames, corrections, loads, commands}; }
+  CycleInput input() const { return {1000, frames, corrections, loads, commands, edges}; }
 
   std::vector<CanFrame> frames;
   std::vector<PoseCorrection> corrections;
   std::vector<LoadResult> loads;
   std::vector<Command> commands;
+  std::vector<LineEdge> edges;
 };
 
 std::vector<std::byte> recorded(const CycleInput& input) {
@@ -101,6 +104,11 @@ TEST(InputRecord, GivesBackEveryInputAsItWas) {
   EXPECT_EQ(back.commands[0].id, all.commands[0].id);
   EXPECT_EQ(back.commands[0].lease.epoch, 6u);
   EXPECT_EQ(back.commands[1].route, all.commands[1].route);
+  ASSERT_EQ(back.edges.size(), 2u);
+  EXPECT_EQ(back.edges[0].stamp_ns, 990);
+  EXPECT_TRUE(back.edges[0].active);
+  EXPECT_EQ(back.edges[1].line, 0xFFFFFFFF);
+  EXPECT_FALSE(back.edges[1].active);
   // Written again, the same bytes.
   EXPECT_EQ(recorded(back.view()), bytes);
 }

@@ -86,6 +86,8 @@ TEST(Settings, TheExampleShowsEveryKeyWithItsDefault) {
   expect_defaults("zones", zones_fields(), loaded.zones);
   expect_defaults("preload", preload_fields(), loaded.preload);
   expect_defaults("cycle", cycle_fields(), loaded.cycle);
+  expect_defaults("gpio", gpio_fields(), loaded.gpio);
+  EXPECT_FALSE(loaded.gpio.any());
 }
 
 TEST(Settings, TheReferenceListsWhatTheTablesHold) {

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/live/output_lines.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "platform/clock.hpp"
+
+namespace zonepack {
+namespace {
+
+constexpr std::int64_t kSetEvery_ns = 2'000'000;
+constexpr std::int64_t kRetry_ns = 1'000'000'000;
+constexpr std::int64_t kLeastStuck_ns = 100'000'000;
+constexpr int kStuckPeriods = 10;
+constexpr int kMostWait_ms = 1000;  // of make_safe(), for a set under way
+
+bool is_fault(const LiveStatus& status) noexcept {
+  const CycleState& state = status.state;
+  const bool outran_its_map = state.pose.trusted && state.zone != kNoZone && !state.zone_resident;
+  return state.odometry_stale || state.blocked || outran_its_map;
+}
+
+}  // namespace
+
+OutputLines::OutputLines(GpioPort& port, const GpioSettings& gpio, LineBoard& board)
+    : port_(port),
+      board_(board),
+      half_wave_ns_(static_cast<std::int64_t>(gpio.heartbeat_s * 1e9 / 2)) {
+  for (OutputRequest& request : output_requests(gpio)) {
+    LineRow& row = board.add(request.name, true);
+    lines_.push_back({std::move(request), &row, nullptr});
+  }
+}
+
+bool OutputLines::open(bool allow_degraded, std::string& fault,
+                       std::vector<std::string>& warnings) {
+  for (Line& line : lines_) {
+    auto opened = port_.open(line.request.settings);
+    if (opened) {
+      line.line = std::move(opened).value();
+      line.active = line.request.settings.active;
+      line.row->active.store(line.active);
+      line.row->working.store(true);
+      continue;
+    }
+    const std::string wrong =
+        line_fault(port_, line.request.name, line.request.settings.name, opened.error());
+    if (!allow_degraded) {
+      fault = wrong + "; or go on without by --allow-degraded";
+      return false;
+    }
+    warnings.push_back(wrong);
+  }
+  return true;
+}
+
+void OutputLines::set_period(std::int64_t period_ns) noexcept {
+  stuck_ns_ = std::max(kLeastStuck_ns, kStuckPeriods * period_ns);
+}
+
+Result<void> OutputLines::start(Sources sources, std::int64_t period_ns) {
+  if (lines_.empty()) return {};
+  sources_ = std::move(sources);
+  set_period(period_ns);
+  moved_ns_ = monotonic_ns();
+  auto thread = Thread::start({.name = "zoned-lines"}, true, [this] { run(); });
+  if (!thread) return thread.error();
+  thread_ = std::move(thread).value();
+  return {};
+}
+
+void OutputLines::run() {
+  while (!stop_.load()) {
+    turn(sources_.status(), sources_.last_load(), monotonic_ns());
+    sleep_until_ns(monotonic_ns() + kSetEvery_ns);
+  }
+}
+
+void OutputLines::stop() noexcept {
+  stop_.store(true);
+  thread_.join();
+  make_safe();
+}
+
+void OutputLines::make_safe() noexcept {
+  safe_.store(true);
+  for (int ms = 0; ms < kMostWait_ms && busy_.test_and_set(); ++ms) {
+    sleep_until_ns(monotonic_ns() + 1'000'000);
+  }
+  for (Line& line : lines_) {
+    if (line.line) static_cast<void>(line.line->set(line.request.settings.active));
+  }
+  busy_.clear();
+}
+
+OutputLines::Line* OutputLines::find(OutputKind kind) noexcept {
+  const auto found = std::find_if(lines_.begin(), lines_.end(),
+                                  [kind](const Line& line) { return line.request.kind == kind; });
+  return found == lines_.end() ? nullptr : &*found;
+}
+
+void OutputLines::turn(const LiveStatus& status, const LoadEnd& load,
+                       std::int64_t now_ns) noexcept {
+  if (busy_.test_and_set()) return;
+  if (!safe_.load()) follow(status, load, now_ns);
+  busy_.clear();
+}
+
+void OutputLines::follow(const LiveStatus& status, const LoadEnd& load,
+                         std::int64_t now_ns) noexcept {
+  if (status.state.cycles != cycles_) {
+    cycles_ = status.state.cycles;
+    moved_ns_ = now_ns;
+  }
+  if (cycles_ == 0) return;
+  const bool stuck = now_ns - moved_ns_ > stuck_ns_;
+  const bool ready = status.state.map_ready && !stuck;
+  bool told = true;
+  if (Line* const line = find(OutputKind::kMapReady)) told = put(*line, ready, now_ns);
+  if (told) follow_latency(status, load, ready, now_ns);
+  if (Line* const line = find(OutputKind::kFault)) {
+    told = put(*line, stuck || is_fault(status), now_ns) && told;
+  }
+  Line* const heartbeat = find(OutputKind::kHeartbeat);
+  if (heartbeat == nullptr || !told || cycles_ == toggled_at_ ||
+      now_ns - toggled_ns_ < half_wave_ns_) {
+    return;
+  }
+  if (!put(*heartbeat, !heartbeat->active, now_ns)) return;
+  toggled_ns_ = now_ns;
+  toggled_at_ = cycles_;
+}
+
+bool OutputLines::put(Line& line, bool active, std::int64_t now_ns) noexcept {
+  if (!line.line && !reopen(line, now_ns)) return false;
+  if (line.active == active && line.row->working.load()) return true;
+  if (safe_.load()) return false;
+  const auto done = line.line->set(active);
+  line.row->working.store(done.ok());
+  if (!done) {
+    line.row->failures.fetch_add(1);
+    line.line.reset();
+    line.retry_ns = now_ns + kRetry_ns;
+    return false;
+  }
+  line.row->changes.fetch_add(line.active != active ? 1 : 0);
+  line.active = active;
+  line.row->active.store(active);
+  return true;
+}
+
+bool OutputLines::reopen(Line& line, std::int64_t now_ns) noexcept {
+  if (now_ns < line.retry_ns) return false;
+  line.retry_ns = now_ns + kRetry_ns;
+  auto opened = port_.open(line.request.settings);
+  if (!opened) {
+    line.row->failures.fetch_add(1);
+    return false;
+  }
+  line.line = std::move(opened).value();
+  line.active = line.request.settings.active;
+  line.row->active.store(line.active);
+  line.row->working.store(true);
+  return true;
+}
+
+void OutputLines::follow_latency(const LiveStatus& status, const LoadEnd& load, bool ready,
+                                 std::int64_t now_ns) noexcept {
+  const bool trusted = status.state.pose.trusted;
+  const bool rises = ready && !ready_;
+  if (rises && trusted_ && load.zone == status.state.zone && load.ns >= waiting_since_ns_) {
+    latency_.add(std::max<std::int64_t>(0, monotonic_ns() - load.ns));
+    board_.ready_latency.store(latency_.figures());
+  }
+  if ((ready_ && !ready) || (trusted && !trusted_)) waiting_since_ns_ = now_ns;
+  ready_ = ready;
+  trusted_ = trusted;
+}
+
+}  // namespace zonepack

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "runtime/settings/yaml_section.hpp"
+
+namespace zonepack {
+
+// The section `gpio` of a settings file.
+void read_gpio(YamlSection& file, GpioSettings& gpio, FaultList& faults);
+
+}  // namespace zonepack
