@@ -24,6 +24,7 @@ bool Service::open(const ServeSettings& settings, const Seqlock<LiveStatus>& sta
       .poses = poses,
       .memory_fd = memory.reader_fd(),
       .lock_fd = memory.lock_fd(),
+      .map_epoch = map.epoch(),
       .lease_ns = first->driven().limits.lease_ns,
       .resident_generation = [&map](ZoneId zone) { return map.generation(zone); },
       .dump = std::move(dump)};

@@ -31,9 +31,10 @@ std::string listen_fault(const std::string& path, const Error& error) {
 }
 
 std::unique_ptr<ServedMap> served_map(const Catalog& catalog, const ZoneGraph& graph,
-                                      std::uint32_t serial, std::span<const ZoneId> pinned) {
+                                      std::uint32_t serial, std::uint32_t epoch,
+                                      std::span<const ZoneId> pinned) {
   auto map = std::make_unique<ServedMap>(
-      ServedMap{catalog, graph, serial, ZoneTable(catalog.zones.size(), pinned), std::nullopt});
+      ServedMap{catalog, graph, serial, epoch, ZoneTable(catalog.zones.size(), pinned), std::nullopt});
   if (Result<NodeStore> nodes = NodeStore::open(catalog); nodes) {
     map->nodes.emplace(std::move(nodes).value());
   }
@@ -69,7 +70,7 @@ std::unique_ptr<Server> Server::open(const ServeSettings& settings, const Server
     return nullptr;
   }
   std::unique_ptr<Server> server(new Server(settings, ports, std::move(poller).value()));
-  server->map_ = served_map(catalog, graph, 1, pinned);
+  server->map_ = served_map(catalog, graph, 1, ports.map_epoch, pinned);
   server->handler_.desk().use(server->map_->zones, server->map_->serial);
   if (!server->add_listener(settings.socket, settings.mode, false, fault) ||
       !server->add_listener(settings.looking_socket, settings.looking_mode, true, fault)) {
@@ -101,7 +102,7 @@ bool Server::add_listener(const std::string& path, const std::string& mode, bool
 
 void Server::offer_map(std::uint32_t serial, const Catalog& catalog, const ZoneGraph& graph,
                        std::span<const ZoneId> pinned) {
-  offered_ = served_map(catalog, graph, serial, pinned);
+  offered_ = served_map(catalog, graph, serial, map_->epoch == 0 ? 0 : map_->epoch + 1, pinned);
 }
 
 void Server::forget_map(std::uint32_t serial) {
