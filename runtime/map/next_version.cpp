@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/map/next_version.hpp"
 
+#include "runtime/map/load_fault.hpp"
 #include "runtime/map/loader.hpp"
 
 namespace zonepack {
 namespace {
 
 Result<void> check_pack(const Catalog& map, ZoneId zone, ReadMode mode, std::string& fault) {
-  const CatalogZone& wanted = map.zones[zone];
   const auto pack = open_pack(map, zone, mode);
-  const bool whole = pack && pack->file().size() == wanted.pack_bytes;
-  if (whole) return {};
-  const Error error = pack ? Error{ErrorCode::kTruncated, static_cast<std::int64_t>(
-                                                              pack->file().size())}
-                           : pack.error();
-  fault = map.folder + "/" + wanted.pack + ": " + to_string(error.code) + ", expected " +
-          std::to_string(wanted.pack_bytes) + " bytes with the signatures of zone " + wanted.name +
-          "; copy the packs before the manifest, or copy the map again";
+  Error error = pack.error();
+  if (pack && pack->file().size() != map.zones[zone].pack_bytes) {
+    error = {ErrorCode::kTruncated, static_cast<std::int64_t>(pack->file().size())};
+  }
+  if (error.code == ErrorCode::kOk) return {};
+  fault = load_fault(map, zone, error);
   return error;
 }
 
