@@ -28,7 +28,7 @@ struct Command {
 
   Kind kind = Kind::kPin;
   std::uint32_t map = 0;  // number of the map that its zones are of; 0: of the one in use
-  std::uint64_t id = 0;  // comes back in the reply
+  std::uint64_t id = 0;   // comes back in the reply
   ZoneId zone = kNoZone;
   Lease lease;
   std::uint32_t route_length = 0;

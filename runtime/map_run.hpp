@@ -18,8 +18,8 @@ struct MapInUse {
   const ZoneGraph& graph;
   std::span<const ZoneNeed> needs;
   Residency& memory;
-  Cycle& cycle;              // of this memory
-  std::uint32_t number = 1;  // in the run
+  Cycle& cycle;                       // of this memory
+  std::uint32_t number = 1;           // in the run
   std::uint32_t slots = kNoSlot - 1;  // that there are, whatever the budget would pay for
 };
 

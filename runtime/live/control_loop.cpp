@@ -10,7 +10,7 @@
 namespace zonepack {
 namespace {
 
-constexpr std::uint64_t kFiguresEvery = 256;  // cycles
+constexpr std::uint64_t kFiguresEvery = 256;              // cycles
 constexpr std::uint64_t kOwnCommand = ~std::uint64_t{0};  // nobody waits for its reply
 
 }  // namespace

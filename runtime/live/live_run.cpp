@@ -185,8 +185,7 @@ void LiveRun::Parts::restore_state() {
     const auto map = shelf.find(glimpse.map);
     if (map == nullptr) return false;
     state.map_version = map->catalog().version;
-    state.zone =
-        glimpse.zone == kNoZone ? std::string() : map->driven().graph.name(glimpse.zone);
+    state.zone = glimpse.zone == kNoZone ? std::string() : map->driven().graph.name(glimpse.zone);
     return true;
   };
   state_saver.emplace(*state_store, next, look, place, tell);
@@ -203,8 +202,9 @@ void LiveRun::Parts::begin_at(const RecordedStart& start) {
 
 bool LiveRun::Parts::open_recorder(std::string& fault) {
   std::vector<std::string> warnings;
-  const bool opened = recording.open(options.recorder, options.preface,
-                                     first()->driven().needs.size(), inputs.settings.cycle.most_frames, fault, warnings);
+  const bool opened =
+      recording.open(options.recorder, options.preface, first()->driven().needs.size(),
+                     inputs.settings.cycle.most_frames, fault, warnings);
   for (const std::string& warning : warnings) tell(warning);
   options.preface = {};
   if (!opened || recording.tap() == nullptr) return opened;

@@ -52,7 +52,7 @@ class Service {
 
   // The server's thread holds the maps that the server refers to.
   std::shared_ptr<const RunMap> served_, offered_;
-  std::mutex mutex_;                     // of what follows
+  std::mutex mutex_;                      // of what follows
   std::shared_ptr<const RunMap> coming_;  // asked for
   std::uint32_t known_ = 0;               // the last one that the server was told of
   std::uint32_t going_ = 0, gone_ = 0;    // asked to be let go of; let go of last

@@ -29,7 +29,7 @@ struct Checkpoint {
   double sigma_m = 0, sigma_rad = 0;
   std::uint32_t map = 1;          // number in the run of the map in use
   std::uint32_t offered_map = 0;  // that is to take its place; 0: none
-  ZoneId zone = kNoZone;  // the robot's own
+  ZoneId zone = kNoZone;          // the robot's own
   bool frozen = false;
   std::vector<Held> resident;  // used longest ago first
   std::vector<ZoneId> pinned;  // asked for, beside those of the settings

@@ -118,9 +118,8 @@ void FlightRecorder::add_map(std::uint32_t number, ByteSpan blocks, std::uint64_
   const std::string name = flight_map_name(number);
   Result<AppendFile> file = make_file(folder_, named_, name);
   if (!file) return fail(file.error());
-  auto map = std::make_shared<Map>(Map{std::move(file).value(),
-                                       named_ ? folder_ + "/" + name : std::string(), number,
-                                       cycle});
+  auto map = std::make_shared<Map>(
+      Map{std::move(file).value(), named_ ? folder_ + "/" + name : std::string(), number, cycle});
   if (const auto written = map->file.append(blocks); !written) return fail(written.error());
   map->file.settle();
   maps_.push_back(std::move(map));

@@ -29,8 +29,8 @@ class FlightRecorder {
   static constexpr std::uint64_t kSegments = 8;
   static constexpr ByteCount kLeastBytes = kSegments * AppendFile::kSettleBytes;
 
-  // Keeps at most `bytes` of cycles in files named in `folder` (made when missing; its own old files are
-  // moved), or without names in `folder` when `named` is false. kIo with errno.
+  // Keeps at most `bytes` of cycles in files named in `folder` (made when missing; its own old
+  // files are moved), or without names in `folder` when `named` is false. kIo with errno.
   static Result<std::unique_ptr<FlightRecorder>> open(const std::string& folder, bool named,
                                                       ByteCount bytes,
                                                       const RecordingPreface& preface);

@@ -47,9 +47,7 @@ struct RecordedInput {
 
   MapOffer offer;
 
-  CycleInput view() const noexcept {
-    return {now_ns, frames, corrections, loads, commands, offer};
-  }
+  CycleInput view() const noexcept { return {now_ns, frames, corrections, loads, commands, offer}; }
 };
 
 // Replaces all but now_ns, to which stamps are relative. kBadStructure for what write_records does

@@ -66,7 +66,7 @@ class InputWriter {
   std::int64_t block_began_ns_ = 0;  // CLOCK_MONOTONIC
   std::int64_t start_ns_ = 0;        // the run's clock, of cycle 0
   std::uint64_t next_cycle_ = 0;
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;                                                      // of what follows
   std::vector<std::pair<std::uint32_t, std::vector<std::byte>>> coming_;  // maps as blocks
 };
 

@@ -10,9 +10,9 @@
 #include "platform/base/require.hpp"
 #include "runtime/event_log.hpp"
 #include "runtime/map_run.hpp"
-#include "runtime/replay/run_map.hpp"
 #include "runtime/replay/recorded_loader.hpp"
 #include "runtime/replay/run_inputs.hpp"
+#include "runtime/replay/run_map.hpp"
 #include "runtime/replay/run_recorder.hpp"
 #include "runtime/replay/run_result.hpp"
 #include "runtime/replay/timed_loader.hpp"
@@ -29,8 +29,7 @@ std::shared_ptr<RunMap> map_of(const RecordingReader& recording, const Settings&
     fault = which + "is not in the recording";
     return nullptr;
   }
-  auto catalog =
-      Catalog::read(recorded->manifest, recorded->folder, settings.memory.payload.mask);
+  auto catalog = Catalog::read(recorded->manifest, recorded->folder, settings.memory.payload.mask);
   if (!catalog) {
     fault = which + "cannot be used: " + to_string(catalog.error().code);
     return nullptr;
@@ -87,7 +86,7 @@ class Run final : public EventSink {
   const Settings& settings_;
   const MapTerms terms_;  // of maps that the run is offered
   const bool exact_;
-  const std::shared_ptr<RunMap> first_;  // drawings stay on its ground
+  const std::shared_ptr<RunMap> first_;               // drawings stay on its ground
   std::vector<std::shared_ptr<RunMap>> maps_in_use_;  // in use, on offer
   RecordedLoader recorded_;
   TimedLoader timed_;  // from a checkpoint
@@ -132,8 +131,8 @@ void Run::go_on_from(const Checkpoint& checkpoint) {
   cycle.continue_from(checkpoint.cycle, checkpoint.start_ns);
   if (checkpoint.has_pose) {
     cycle.start_at(checkpoint.now_ns, checkpoint.T_map_base,
-                    std::max(checkpoint.sigma_m, settings_.pose.start_sigma_m),
-                    std::max(checkpoint.sigma_rad, settings_.pose.start_sigma_rad));
+                   std::max(checkpoint.sigma_m, settings_.pose.start_sigma_m),
+                   std::max(checkpoint.sigma_rad, settings_.pose.start_sigma_rad));
   }
   const auto add = [&](Command::Kind kind, ZoneId zone) {
     Command& command = waiting_.emplace_back();
@@ -296,7 +295,8 @@ std::optional<RecordedRunResult> replay_recording(RecordingReader& recording,
   if (map == nullptr) return std::nullopt;
   const std::uint32_t in_use = recording.checkpoint() ? recording.checkpoint()->map : 1;
   if (in_use != 1) {
-    map = map_of(recording, run.settings, map->driven().terms_of_next(preface.terms), in_use, fault);
+    map =
+        map_of(recording, run.settings, map->driven().terms_of_next(preface.terms), in_use, fault);
     if (map == nullptr) return std::nullopt;
   }
   return Run(recording, run, std::move(map)).drive(events_path, fault);

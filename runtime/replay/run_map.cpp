@@ -19,8 +19,7 @@ bool RunMap::prepare(const CycleConfig& config, ZoneLoader& loader, EventSink& e
   if (!map.pin(*memory_, fault)) return false;
   cycle_.emplace(config, CycleParts{map.graph, map.needs, map.load_s, map.pinned, *memory_, loader,
                                     events, directory, number_});
-  in_use_.emplace(
-      MapInUse{catalog_, map.graph, map.needs, *memory_, *cycle_, number_, map.slots});
+  in_use_.emplace(MapInUse{catalog_, map.graph, map.needs, *memory_, *cycle_, number_, map.slots});
   return true;
 }
 

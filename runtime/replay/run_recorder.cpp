@@ -18,7 +18,7 @@ double percentile(const std::vector<float>& sorted, double share) {
 }  // namespace
 
 CycleRecord record_of(std::int64_t now_ns, const CycleState& state, const Residency& memory) {
-  return {now_ns, state, memory.used_sum(), memory.resident_sum(), memory.counters(),
+  return {now_ns,          state, memory.used_sum(), memory.resident_sum(), memory.counters(),
           memory.charged()};
 }
 
@@ -41,9 +41,8 @@ void RunRecorder::change_map(const ZoneGraph& graph, std::span<const ZoneNeed> n
   drawn_.clear();
   for (ZoneId zone = 0; zone < needs.size(); ++zone) {
     const auto same = std::ranges::find(drawn_names_, graph.name(zone));
-    drawn_.push_back(same == drawn_names_.end()
-                         ? kNoZone
-                         : static_cast<ZoneId>(same - drawn_names_.begin()));
+    drawn_.push_back(same == drawn_names_.end() ? kNoZone
+                                                : static_cast<ZoneId>(same - drawn_names_.begin()));
   }
   graph_ = &graph;
   needs_ = needs;
@@ -105,8 +104,7 @@ void RunRecorder::check_limits(const CycleRecord& cycle) {
   peak_.slots = std::max(peak_.slots, charged_.slots);
   peak_.signatures = std::max(peak_.signatures, charged_.signatures);
   peak_bytes_ = std::max(peak_bytes_, cycle.charged_bytes);
-  const bool over_bytes = limits_.fixed > limits_.budget ||
-                          cycle.charged_bytes > limits_.budget ||
+  const bool over_bytes = limits_.fixed > limits_.budget || cycle.charged_bytes > limits_.budget ||
                           charged_.slots * limits_.slot_bytes > limits_.budget - limits_.fixed;
   const bool over_signatures =
       limits_.max_signatures > 0 && charged_.signatures > limits_.max_signatures;

@@ -72,7 +72,7 @@ class RunRecorder final : public EventSink {
   ResidencyLimits limits_;
   EventSink& log_;
 
-  std::vector<Held> held_;  // by ZoneId
+  std::vector<Held> held_;                // by ZoneId
   std::vector<std::string> drawn_names_;  // of the first map; empty until another is in use
   std::vector<ZoneId> drawn_;             // zones of the first map, by ZoneId of the one in use
   NeedSum charged_;

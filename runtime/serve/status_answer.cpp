@@ -102,12 +102,11 @@ Message answer_status(MessageBuilder& to, std::uint64_t id, const ServedMap& map
                       const LiveStatus& status, const ServerCounters& counters) {
   flatbuffers::FlatBufferBuilder& builder = to.builder();
   const auto pose = pose_report(builder, status);
-  const bool somewhere = status.state.map == map.serial &&
-                         status.state.zone < map.catalog.zones.size();
+  const bool somewhere =
+      status.state.map == map.serial && status.state.zone < map.catalog.zones.size();
   const auto zone =
       builder.CreateString(somewhere ? map.catalog.zones[status.state.zone].name : std::string());
-  const auto version =
-      builder.CreateVector(map.catalog.version.data(), map.catalog.version.size());
+  const auto version = builder.CreateVector(map.catalog.version.data(), map.catalog.version.size());
   const auto step = builder.CreateString(to_string(status.worst.step));
   const wire::Timing wakeup = timing(status.wakeup), cycle = timing(status.cycle);
   wire::StatusBuilder body(builder);

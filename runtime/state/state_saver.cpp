@@ -53,7 +53,9 @@ void StateSaver::stop() {
 void StateSaver::watch() {
   const StateGlimpse glimpse = look_();
   if (!glimpse.pose.valid) return;
-  if (tried_ && glimpse.map == map_ && glimpse.zone == zone_ && glimpse.now_ns - last_ns_ < kPeriod_ns) return;
+  if (tried_ && glimpse.map == map_ && glimpse.zone == zone_ &&
+      glimpse.now_ns - last_ns_ < kPeriod_ns)
+    return;
   save(glimpse);
 }
 

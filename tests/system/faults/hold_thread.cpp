@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// usage: hold_thread PID NAME SECONDS: one thread of a process stands still for so long, as one does
-// that waits in the kernel for a disk which does not answer; the others run on.
+// usage: hold_thread PID NAME SECONDS: one thread of a process stands still for so long, as one
+// does that waits in the kernel for a disk which does not answer; the others run on.
 #include <dirent.h>
 #include <sys/ptrace.h>
 #include <sys/wait.h>

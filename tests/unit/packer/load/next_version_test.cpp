@@ -52,8 +52,9 @@ TEST_F(NextVersion, IsRefusedWhenAPackIsAnotherThanTheManifestTellsOf) {
 }
 
 TEST_F(NextVersion, IsNotTheVersionInUseAndNoOtherMap) {
-  EXPECT_EQ(check_next_version(next.catalog(), next.catalog(), kDefaultReadMode, fault).error().code,
-            ErrorCode::kExists);
+  EXPECT_EQ(
+      check_next_version(next.catalog(), next.catalog(), kDefaultReadMode, fault).error().code,
+      ErrorCode::kExists);
   Catalog other = next.catalog();
   other.lineage[0] ^= 1;
   EXPECT_EQ(check_next_version(in_use.catalog(), other, kDefaultReadMode, fault).error().code,
