@@ -8,10 +8,15 @@ namespace zonepack {
 namespace {
 
 Result<void> check_pack(const Catalog& map, ZoneId zone, ReadMode mode, std::string& fault) {
-  const auto pack = open_pack(map, zone, mode);
-  Error error = pack.error();
-  if (pack && pack->file().size() != map.zones[zone].pack_bytes) {
-    error = {ErrorCode::kTruncated, static_cast<std::int64_t>(pack->file().size())};
+  const CatalogZone& wanted = map.zones[zone];
+  const auto file = StorageFile::open(map.folder + "/" + wanted.pack, mode);
+  Error error = file.error();
+  if (file && file->size() < wanted.pack_bytes) {
+    error = {ErrorCode::kTruncated, static_cast<std::int64_t>(file->size())};
+  } else if (file && file->size() > wanted.pack_bytes) {
+    error = {ErrorCode::kMismatch};
+  } else if (file) {
+    error = open_pack(map, zone, mode).error();
   }
   if (error.code == ErrorCode::kOk) return {};
   fault = load_fault(map, zone, error);

@@ -6,7 +6,7 @@ set -euo pipefail
 bin=$1 data=$2/tests/data config=$2/config/agilex.yaml
 run=$data/scenario1_loop
 work=$(mktemp -d)
-trap 'kill %1 2>/dev/null || true; rm -rf "$work"' EXIT
+trap 'kill %1 2>/dev/null && wait || true; rm -rf "$work"' EXIT
 cd "$work"
 export ZONED_SOCKET=$work/run/zoned.sock
 
@@ -54,8 +54,8 @@ until_status .map_ready
 in_use first
 kill -HUP $pid  # nothing new
 put second/manifest.zpm
-only_new=$(comm -13 <(cd first && ls ./*.zpk) <(cd second && ls ./*.zpk) | head -1)
-refused 1 "map is not changed: map/"  # half copied: no new pack
+only_new=$(comm -13 <(cd first && ls ./*.zpk) <(cd second && ls ./*.zpk) | sed -n 1p)
+refused 1 "is not changed: zone"  # half copied: no new pack
 says "not found"
 head -c 1000 second/manifest.zpm >map/manifest.zpm.half && mv map/manifest.zpm.half map/manifest.zpm
 refused 2 "map/manifest.zpm"
@@ -63,7 +63,7 @@ for pack in second/*.zpk; do [ -e "map/$(basename "$pack")" ] || put "$pack"; do
 put second/manifest.zpm
 size=$(stat -c %s "map/$only_new")
 truncate -s $((size - 1)) "map/$only_new"
-refused 3 "$only_new"
+refused 3 "${only_new#./}"
 put "second/$only_new"
 says "is the version that is in use"
 
