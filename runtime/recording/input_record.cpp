@@ -6,7 +6,8 @@
 namespace zonepack {
 namespace {
 
-// A new member of these must be written and read below, or a recording would not hold it.
+// A new member of these must be written and read below, or a recording would not hold it. (Not
+// Command::map: what is not of the map in use never becomes an input.)
 static_assert(sizeof(Command) == 296 && sizeof(LoadResult) == 40 && sizeof(PoseCorrection) == 64 &&
               sizeof(LineEdge) == 16);
 
@@ -78,6 +79,11 @@ void write_edges(const CycleInput& input, ByteWriter& out) noexcept {
   }
 }
 
+void write_offer(const CycleInput& input, ByteWriter& out) noexcept {
+  out.varint(input.offer.map);
+  out.varint(static_cast<std::uint16_t>(input.offer.fault));
+}
+
 template <typename Write>
 void write_record(RecordKind kind, bool present, const CycleInput& input, ByteWriter& out,
                   Write write) noexcept {
@@ -125,12 +131,18 @@ bool read_correction(ByteReader& in, std::int64_t now_ns, PoseCorrection& fix) {
   return in.ok();
 }
 
+bool read_code(ByteReader& in, ErrorCode& code) {
+  const std::uint64_t number = in.varint();
+  if (number > static_cast<std::uint16_t>(ErrorCode::kCancelled)) return false;
+  code = static_cast<ErrorCode>(number);
+  return true;
+}
+
 bool read_load(ByteReader& in, LoadResult& load) {
   load.zone = in.varint32();
   load.generation = in.varint32();
-  const std::uint64_t code = in.varint();
-  if (code > static_cast<std::uint16_t>(ErrorCode::kCancelled)) return false;
-  load.error = {static_cast<ErrorCode>(code), in.zigzag()};
+  if (!read_code(in, load.error.code)) return false;
+  load.error.detail = in.zigzag();
   load.slots = {0, 0, in.varint32()};
   return in.ok();
 }
@@ -164,6 +176,7 @@ bool is_known(std::uint8_t kind) {
     case RecordKind::kCorrections:
     case RecordKind::kLoads:
     case RecordKind::kCommands:
+    case RecordKind::kOffer:
     case RecordKind::kEdges:
       return true;
   }
@@ -187,6 +200,9 @@ bool read_record(RecordKind kind, ByteReader in, RecordedInput& into) {
       return read_items(in, into.loads, kMostRecordedLoads, read_load);
     case RecordKind::kCommands:
       return read_items(in, into.commands, Cycle::kMostCommands, read_command);
+    case RecordKind::kOffer:
+      into.offer.map = in.varint32();
+      return read_code(in, into.offer.fault) && in.finished();
     case RecordKind::kEdges:
       return read_items(in, into.edges, kMostRecordedEdges, [&](ByteReader& item, LineEdge& edge) {
         return read_edge(item, into.now_ns, edge);
@@ -206,6 +222,8 @@ void write_records(const CycleInput& input, ByteWriter& out) noexcept {
   write_record(RecordKind::kCorrections, !input.corrections.empty(), input, out, write_corrections);
   write_record(RecordKind::kLoads, !input.loads.empty(), input, out, write_loads);
   write_record(RecordKind::kCommands, !input.commands.empty(), input, out, write_commands);
+  const bool offered = input.offer.map != 0 || input.offer.fault != ErrorCode::kOk;
+  write_record(RecordKind::kOffer, offered, input, out, write_offer);
   write_record(RecordKind::kEdges, !input.edges.empty(), input, out, write_edges);
 }
 
@@ -214,6 +232,7 @@ Result<void> read_records(ByteSpan records, RecordedInput& into) {
   into.corrections.clear();
   into.loads.clear();
   into.commands.clear();
+  into.offer = {};
   into.edges.clear();
   ByteReader in(records);
   while (in.ok() && !in.at_end()) {

@@ -17,6 +17,7 @@ enum class RecordKind : std::uint8_t {
   kCorrections = 2,
   kLoads = 3,
   kCommands = 4,
+  kOffer = 5,
   kEdges = 6,
 };
 // Records of this kind and above may be passed over by a reader that does not know them; any other
@@ -47,7 +48,11 @@ struct RecordedInput {
   std::vector<Command> commands;
   std::vector<LineEdge> edges;
 
-  CycleInput view() const noexcept { return {now_ns, frames, corrections, loads, commands, edges}; }
+  MapOffer offer;
+
+  CycleInput view() const noexcept {
+    return {now_ns, frames, corrections, loads, commands, offer, edges};
+  }
 };
 
 // Replaces all but now_ns, to which stamps are relative. kBadStructure for what write_records does

@@ -16,6 +16,8 @@ set(zonepack_alone
   runtime/live/check_command.cpp
   runtime/live/live_loader.cpp
   runtime/odometry/det_math.cpp
+  runtime/recording/map_block.cpp
+  runtime/recording/preface.cpp
   runtime/replay/replay.cpp
   runtime/replay/run_files.cpp
   runtime/replay/summary_text.cpp

@@ -49,6 +49,7 @@ class CycleTest : public testing::Test, public EventSink {
                fixes,
                {loads.data(), load_count},
                std::exchange(commands, {}),
+               {},
                std::exchange(edges, {})});
     allocations += allocated.count();
   }

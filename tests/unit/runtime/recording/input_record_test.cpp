@@ -54,7 +54,7 @@ struct Everything {
     edges = {{990, LineEdge::kDock, true},
              {std::numeric_limits<std::int64_t>::min(), 0xFFFFFFFF, false}};
   }
-  CycleInput input() const { return {1000, frames, corrections, loads, commands, edges}; }
+  CycleInput input() const { return {1000, frames, corrections, loads, commands, {}, edges}; }
 
   std::vector<CanFrame> frames;
   std::vector<PoseCorrection> corrections;
@@ -188,6 +188,23 @@ TEST(ByteRing, KeepsMessagesWholeAndInOrderAcrossItsEndAndRefusesWhatDoesNotFit)
   }
   EXPECT_GT(popped, 400u);
   EXPECT_FALSE(ring.push(std::vector<std::byte>(125), {}));  // 4 more for its length
+}
+
+TEST(InputRecord, CarriesTheMapOnOfferOrWhyThereIsNone) {
+  for (const MapOffer offer : {MapOffer{7, ErrorCode::kOk}, MapOffer{0, ErrorCode::kTruncated}}) {
+    CycleInput input;
+    input.offer = offer;
+    std::vector<std::byte> bytes(64);
+    ByteWriter out(bytes);
+    write_records(input, out);
+    RecordedInput back;
+    back.offer.map = 99;
+    ASSERT_TRUE(read_records(out.written(), back));
+    EXPECT_EQ(back.offer.map, offer.map);
+    EXPECT_EQ(back.offer.fault, offer.fault);
+    EXPECT_EQ(read_records(out.written().first(out.size() - 1), back).error().code,
+              ErrorCode::kBadStructure);
+  }
 }
 
 }  // namespace
