@@ -26,7 +26,7 @@ most=$(($(budget first) > $(budget second) ? $(budget first) : $(budget second))
 
 privilege=()
 chrt -f 1 true 2>/dev/null || privilege=(--allow-degraded)
-"$bin/zoned" run --config "$config" --map map --can "log:$run/can0.log@4" --corrections "$run/corrections.txt" \
+"$bin/zoned" run --config "$config" --map map --can "log:$run/can0.log@1" --corrections "$run/corrections.txt" \
   --budget $most --record run.zpr --events live.jsonl --json live.json "${privilege[@]}" >out.txt 2>&1 &
 pid=$!
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // usage: served_check SOCKET MAP...: reads every zone that zoned serves, in place, again and again,
-// through crashes and changes of map, and compares each signature with the packs of the maps. Ends
-// at SIGTERM with one line of JSON; with 1 when anything was served that no pack holds, and 2 when
-// nothing was read at all.
+// through crashes and changes of map, and compares each signature with the packs of the maps. Says
+// ready when it begins; ends at SIGTERM with one line of JSON; with 1 when anything was served that
+// no pack holds, and 2 when nothing was read at all.
 #include <signal.h>
 #include <unistd.h>
 
@@ -113,5 +113,6 @@ int main(int argc, char** argv) {
     return 2;
   }
   ::signal(SIGTERM, [](int) { zonepack::stop = 1; });
+  std::fputs("ready\n", stderr);
   return zonepack::run(argv[1], digests);
 }

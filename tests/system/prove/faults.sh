@@ -24,9 +24,9 @@ trap clean EXIT
 privilege=()
 chrt -f 1 true 2>/dev/null || privilege=(--allow-degraded)
 failed=0
-printf '%-42s %-5s %-46s %s\n' fault how "what was seen" verdict
+printf '%-48s %-5s %-62s %s\n' fault how "what was seen" verdict
 row() {  # FAULT HOW SEEN VERDICT
-  printf '%-42s %-5s %-46s %s\n' "$@"
+  printf '%-48s %-5s %-62s %s\n' "$@"
   [[ $4 == holds || $4 == "not here"* ]] || failed=1
 }
 why() { reason="$*"; return 1; }
@@ -51,16 +51,22 @@ version() { "$bin/zonepack" inspect "$1" --json - 2>/dev/null | jq -r .version; 
 first=$(version first) second=$(version second)
 
 settings() { sed "$1" "$source/config/agilex.yaml" >robot.yaml; chmod a+r robot.yaml; }
-as=()
+as=() broken=()
 start() {  # CAN OPTION...: zoned on a fresh copy of the map, and a reader that checks all it serves
   local can=$1
   shift
   rm -rf map run && cp -r first map && mkdir -m 777 run
+  read_along
+  "${broken[@]}"
   "${as[@]}" "$bin/zoned" run --config robot.yaml --map map --can "$can" --corrections "$drive/corrections.txt" \
     --budget "$most" --json live.json --events live.jsonl "${privilege[@]}" "$@" >out.txt 2>&1 &
   pid=$!
-  "$bin/served_check" "$ZONED_SOCKET" first second >read.json 2>>out.txt &
+}
+read_along() {
+  "$bin/served_check" "$ZONED_SOCKET" first second >read.json 2>ready.txt &
   reader=$!
+  for _ in $(seq 300); do ! grep -q ready ready.txt || return 0; sleep 0.1; done
+  echo "served_check does not begin: $(cat ready.txt)" >&2
 }
 status() { "$bin/zonectl" status --json status.json >/dev/null 2>&1; }
 until_status() {  # JQ-CONDITION
@@ -82,7 +88,7 @@ finish() {  # waits for the end of the drive (or asks for it: finish TERM), and 
     { why "$(cat live.json)"; return 1; }
 }
 told() { grep -q -- "$1" out.txt || { why "no word of '$1'"; return 1; }; }
-happened() { grep -q "\"event\":\"$1\".*$2" live.jsonl || { why "no event $1 $2"; return 1; }; }
+happened() { grep -q "\"event\":\"$1\".*${2:-}" live.jsonl || { why "no event $*"; return 1; }; }
 others_loaded() { (($(grep -c '"event":"load_done"' live.jsonl) > 5)) || { why "others did not load"; return 1; }; }
 reads() { field read.json .reads; }
 verdict() {  # FAULT CODE
@@ -92,13 +98,15 @@ verdict() {  # FAULT CODE
     pid= reader=
   fi
 }
-broken_pack() {  # FAULT SEEN WORD COMMAND...: something happens to the pack of C2 before the robot comes there
+broken_pack() {  # FAULT SEEN WORD COMMAND...: something happens to the pack of C2, where the robot comes by
   local fault=$1 word=$3
   seen=$2
   shift 3
   local code=0
-  start "log:$drive/can0.log@50"
-  { until_status '.zones_loaded >= 0' && "$@" && finish && told "zone C2 cannot be loaded.*$word" &&
+  broken=("$@")
+  start "log:$drive/can0.log@20"
+  broken=()
+  { finish && told "zone C2 cannot be loaded.*$word" &&
     happened load_failed C2 && others_loaded; } || code=$?
   verdict "$fault" $code
 }
@@ -148,7 +156,7 @@ else
   unit "permission lost" test_packer '*LoadFaults.NotAllowed*'
 fi
 code=0 seen="the old map stays in use"
-"$source/tests/system/map_change_test.sh" "$bin" "$source" >out.txt 2>&1 || { code=1; reason=$(tail -1 out.txt); }
+"$source/tests/system/map_change_test.sh" "$bin" "$source" >out.txt 2>&1 || { code=1; reason=$(head -1 out.txt); }
 echo '{"reads":0}' >read.json
 verdict "map half copied, short, damaged" $code
 
@@ -209,14 +217,13 @@ settings 's/bytes: 67108864 /bytes: 2097152 /'
 put() { cp "$1" map/.coming && mv map/.coming "map/$(basename "$1")"; }
 rm -rf map run && cp -r first map && cp second/*.zpk map && mkdir run state
 export STATE_DIRECTORY=$work/state
-"$bin/served_check" "$ZONED_SOCKET" first second >read.json 2>out.txt &
-reader=$!
+read_along
 code=0 started=0 changes=0 loads=0 evictions=0 saved=0
 RANDOM=1
-kill_once() {
+kill_once() {  # [SECONDS]: lives so much longer; blocks of the flight recorder are a second long
   local expected=$first want=$first
   cmp -s map/manifest.zpm second/manifest.zpm && expected=$second
-  "$bin/zoned" run --config robot.yaml --map map --can "log:$drive/can0.log@100" --corrections "$drive/corrections.txt" \
+  "$bin/zoned" run --config robot.yaml --map map --can "log:$drive/can0.log@40" --corrections "$drive/corrections.txt" \
     --budget "$most" "${privilege[@]}" >out.txt 2>&1 &
   pid=$!
   sleep 0.0$((RANDOM % 10))
@@ -224,13 +231,14 @@ kill_once() {
     want=$(field status.json .map_version)
     [[ $want == "$expected" ]] || { why "starts with map $want, not $expected"; return 1; }
     jq -e ".charged_bytes <= $most" status.json >/dev/null || { why "over the budget"; return 1; }
-    ((started += 1))
+    started=$((started + 1))
   fi
   if ((RANDOM % 2)); then
     if [[ $expected == "$first" ]]; then put second/manifest.zpm; else put first/manifest.zpm; fi
     kill -HUP $pid 2>/dev/null || true
   fi
   sleep 0.$((RANDOM % 3))$((RANDOM % 10))
+  sleep "${1:-0}"
   if kill -0 $pid 2>/dev/null; then kill -9 $pid; fi
   wait $pid 2>/dev/null || true
   pid=
@@ -238,16 +246,19 @@ kill_once() {
 }
 look_back() {  # what the killed run left behind, and that it can be replayed
   [ -e state/flight/preface ] || return 0
-  [ ! -e state/state-0 ] || ((saved += 1))
+  [ ! -e state/state-0 ] || saved=$((saved + 1))
   "$bin/zoned" replay --recording state/flight --events flight.jsonl --json flight.json >flight.txt 2>&1 ||
     grep -q "first cycle" flight.txt || { why "flight: $(tail -1 flight.txt)"; return 1; }
-  ((loads += $(grep -c '"event":"load_' flight.jsonl || true)))
-  ((evictions += $(grep -c '"event":"evicted"' flight.jsonl || true)))
-  ((changes += $(grep -c '"event":"map_' flight.jsonl || true)))
+  loads=$((loads + $(grep -c '"event":"load_' flight.jsonl || true)))
+  evictions=$((evictions + $(grep -c '"event":"evicted"' flight.jsonl || true)))
+  changes=$((changes + $(grep -c '"event":"map_changed"' flight.jsonl || true)))
 }
 for ((i = 1; i <= kills; i++)); do
-  kill_once || { code=1; break; }
-  ((i % 10 != 0)) || look_back || { code=1; break; }
+  if ((i % 10 != 0)); then
+    kill_once || { code=1; break; }
+  else
+    kill_once 1.$((RANDOM % 10)) && look_back || { code=1; break; }
+  fi
 done
 if ((code == 0)); then
   kill -TERM $reader
@@ -259,11 +270,10 @@ fi
   { code=1; why "loads $loads evictions $evictions changes $changes saved $saved" || true; }
 seen="$started starts asked, all into a true state"
 verdict "killed $kills times" $code
-row "  what they were doing, every tenth" real "$loads loads, $evictions evictions, $changes map offers" holds
+row "  what they were doing, every tenth" real "$loads loads, $evictions evictions, $changes changes of map" holds
 if ((code == 0)); then
   seen="no violation, packs whole"
-  "$bin/served_check" "$ZONED_SOCKET" first second >read.json 2>>out.txt &
-  reader=$!
+  read_along
   "$bin/zoned" run --config robot.yaml --map map --can "log:$drive/can0.log@50" --corrections "$drive/corrections.txt" \
     --budget "$most" --json live.json --events live.jsonl "${privilege[@]}" >out.txt 2>&1 &
   pid=$!
