@@ -50,10 +50,10 @@ check 'route from here' 0 '^7.0 m, handed to preload$' "$zonectl" route . c --hi
 check 'dump' 0 ': 6 bytes$' "$zonectl" dump "$work/recording"
 [ "$(cat "$work/recording")" = frames ]
 check 'dump into nowhere' 1 'cannot be written' "$zonectl" dump "$work/no/folder"
-check 'events' 0 'zone_wanted b$' timeout --preserve-status 1 "$zonectl" events
-check 'watch without a terminal' 0 '^in a  x 1.00  y 2.00 m .* NOT KEEPING UP' timeout --preserve-status 1 "$zonectl" watch
+check 'events' 0 'zone_wanted b$' timeout --preserve-status 3 "$zonectl" events
+check 'watch without a terminal' 0 '^in a  x 1.00  y 2.00 m .* NOT KEEPING UP' timeout --preserve-status 3 "$zonectl" watch
 # In a terminal: pictures until interrupted, and the terminal as it was before.
-TERM=xterm check 'watch' 0 $'\x1b\\[\\?1049h.*zoned.*in a' script -qec "timeout -s INT --preserve-status 1 $zonectl watch" /dev/null
+TERM=xterm check 'watch' 0 $'\x1b\\[\\?1049h.*zoned.*in a' script -qec "timeout -s INT --preserve-status 4 $zonectl watch" /dev/null
 tr -d '\r' <"$work/out" | tail -c 32 | grep -qF $'\x1b[?1049l' || { echo 'watch: the terminal was left changed'; failed=1; }
 pid=$run_PID
 eval "exec ${run[1]}>&-"
