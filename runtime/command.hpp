@@ -27,7 +27,8 @@ struct Command {
   static constexpr std::size_t kMostRoute = 64;
 
   Kind kind = Kind::kPin;
-  std::uint64_t id = 0;  // comes back in the reply
+  std::uint32_t map = 0;  // number of the map that its zones are of; 0: of the one in use
+  std::uint64_t id = 0;   // comes back in the reply
   ZoneId zone = kNoZone;
   Lease lease;
   std::uint32_t route_length = 0;
@@ -41,6 +42,7 @@ const char* to_string(Command::Kind kind) noexcept;
 // together; too many pins).
 struct CommandReply {
   std::uint64_t id = 0;
+  std::uint32_t map = 0;  // number of the map that took it; 0: the one in use
   Error error;
   Lease lease;  // for kLease
 };

@@ -22,14 +22,16 @@ Cycle::Cycle(const CycleConfig& settings, const CycleParts& parts)
     : graph_(parts.graph),
       needs_(parts.needs),
       memory_(parts.memory),
-      events_(parts.events),
+      events_(parts.events, parts.map),
       odometry_(settings.odometry),
       filter_(settings.filter),
       tracker_(parts.graph, settings.tracker),
       preload_(parts.graph, parts.load_s, settings.preload),
       keeper_(parts.memory, parts.loader, events_, parts.needs, parts.pinned, parts.directory,
               settings.keeper),
-      tracker_settings_(settings.tracker) {}
+      tracker_settings_(settings.tracker) {
+  state_.map = parts.map;
+}
 
 void Cycle::start_at(std::int64_t now_ns, const Pose2& T_map_base) noexcept {
   filter_.start_at(now_ns, T_map_base);
@@ -204,9 +206,11 @@ void Cycle::want_route(Wanted& wanted) const noexcept {
 }
 
 void Cycle::go_on_from(const Cycle& other) noexcept {
+  const std::uint32_t map = state_.map;
   odometry_ = other.odometry_;
   filter_ = other.filter_;
   state_ = other.state_;
+  state_.map = map;
   state_.zone = kNoZone;
   state_.zone_resident = false;
   state_.map_ready = false;

@@ -39,6 +39,13 @@ struct CycleParts {
   ZoneLoader& loader;
   EventSink& events;
   ZoneDirectory* directory = nullptr;  // where readers find resident zones
+  std::uint32_t map = 1;               // number in the run of the map that all this is of
+};
+
+// Another map on offer: its number in this run, or why one that was to be offered cannot be used.
+struct MapOffer {
+  std::uint32_t map = 0;  // 0: none
+  ErrorCode fault = ErrorCode::kOk;
 };
 
 // All that a cycle decides on, beside the settings and the map; what is recorded. Frames and
@@ -49,10 +56,12 @@ struct CycleInput {
   std::span<const PoseCorrection> corrections{};
   std::span<const LoadResult> loads{};  // polled from the loader
   std::span<const Command> commands{};  // at most Cycle::kMostCommands
+  MapOffer offer{};                     // MapRun's
 };
 
 struct CycleState {
   PoseEstimate pose;
+  std::uint32_t map = 1;  // number in the run of the map that `zone` is of
   ZoneId zone = kNoZone;  // the robot's own, by the tracker
   bool zone_resident = false;
   bool map_ready = false;  // the pose is trusted and the robot's own zone resident

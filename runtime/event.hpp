@@ -44,6 +44,7 @@ struct Event {
   EventKind kind = EventKind::kStart;
   std::uint64_t cycle = 0;
   std::int64_t t_ns = 0;  // since the start of the run
+  std::uint32_t map = 1;  // number in the run of the map that the zone is of
   ZoneId zone = kNoZone;
   std::uint32_t generation = 0;
   std::uint32_t signatures = 0;          // of the zone
@@ -63,10 +64,10 @@ class EventSink {
   virtual void on_event(const Event& event) noexcept = 0;
 };
 
-// Stamps events with the cycle in which they happen.
+// Stamps events with the map they are of and the cycle in which they happen.
 class EventStamper {
  public:
-  explicit EventStamper(EventSink& sink) noexcept : sink_(sink) {}
+  explicit EventStamper(EventSink& sink, std::uint32_t map = 1) noexcept : sink_(sink), map_(map) {}
 
   void begin_cycle(std::uint64_t cycle, std::int64_t t_ns) noexcept {
     cycle_ = cycle;
@@ -76,6 +77,7 @@ class EventStamper {
   std::int64_t t_ns() const noexcept { return t_ns_; }
 
   void emit(Event event) noexcept {
+    event.map = map_;
     event.cycle = cycle_;
     event.t_ns = t_ns_;
     sink_.on_event(event);
@@ -83,6 +85,7 @@ class EventStamper {
 
  private:
   EventSink& sink_;
+  std::uint32_t map_;
   std::uint64_t cycle_ = 0;
   std::int64_t t_ns_ = 0;
 };

@@ -16,6 +16,9 @@ class InputSink {
   // clock_offset_ns: CLOCK_REALTIME minus the clock of input.now_ns.
   virtual void on_inputs(std::uint64_t cycle, const CycleInput& input,
                          std::int64_t clock_offset_ns) noexcept = 0;
+
+  // Cycles that could not be kept.
+  virtual std::uint64_t lost() const noexcept = 0;
 };
 
 }  // namespace zonepack

@@ -32,6 +32,10 @@ const CycleState& MapRun::run(const CycleInput& input) noexcept {
     if (command.kind == Command::Kind::kMapFreed) map_->memory.give_up_set_aside();
   }
   map_->cycle.run(own);
+  if (input.offer.fault != ErrorCode::kOk) {
+    map_->cycle.tell(EventKind::kMapOffered);
+    map_->cycle.tell(EventKind::kMapRefused, to_string(input.offer.fault));
+  }
   if (answer != nullptr) {
     take_load(*answer);
   } else if (next_ != nullptr && step_ == Step::kNone) {
@@ -63,10 +67,15 @@ void MapRun::begin(std::int64_t now_ns) noexcept {
 void MapRun::make_room() noexcept {
   if (map_->cycle.keeper().loading() || drop_one()) return;
   const ZoneNeed need = zone_ == kNoZone ? ZoneNeed{} : next_->needs[zone_];
-  if (!map_->memory.set_aside(next_->memory.limits().fixed, need.slots)) {
+  // Here for the new one's tables and zone, there for the old one's tables beside them.
+  const bool room = map_->memory.used_sum().slots + need.slots <= next_->slots &&
+                    map_->memory.set_aside(next_->memory.limits().fixed, need.slots) &&
+                    next_->memory.set_aside(map_->memory.limits().fixed, need.slots);
+  if (!room) {
     refuse("no room");
     return;
   }
+  next_->memory.give_up_set_aside();
   if (zone_ == kNoZone) {
     change({});
     return;
@@ -104,6 +113,7 @@ void MapRun::change(const SlotChain& slots) noexcept {
   }
   loader_.use(next_->catalog);
   next_->memory.count_on(map_->memory.counters());
+  next_->memory.freeze(map_->memory.frozen());
   const auto tables = next_->memory.set_aside(map_->memory.limits().fixed, 0);
   ZP_REQUIRE(tables.ok());
   next_->cycle.go_on_from(map_->cycle);

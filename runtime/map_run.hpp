@@ -18,7 +18,9 @@ struct MapInUse {
   const ZoneGraph& graph;
   std::span<const ZoneNeed> needs;
   Residency& memory;
-  Cycle& cycle;  // of this memory
+  Cycle& cycle;                       // of this memory
+  std::uint32_t number = 1;           // in the run
+  std::uint32_t slots = kNoSlot - 1;  // that there are, whatever the budget would pay for
 };
 
 // The cycle over the map in use, and the change to another version of it while the robot drives:
@@ -42,7 +44,8 @@ class MapRun {
   MapRun(MapInUse& map, ZoneLoader& loader, ZoneDirectory* directory) noexcept
       : map_(&map), loader_(loader), directory_(directory) {}
 
-  // A cycle. What the loader answers for a map on offer is taken out of `input.loads`.
+  // A cycle. What the loader answers for a map on offer is taken out of `input.loads`. An offer in
+  // the input with a fault is told as an event; one without was made by offer().
   const CycleState& run(const CycleInput& input) noexcept;
 
   // Offers another map; before a run(). False while another is on offer.

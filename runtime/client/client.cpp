@@ -43,7 +43,8 @@ Client::Client(std::unique_ptr<Connection> connection, SharedMemory memory, Shar
     : connection_(std::move(connection)),
       memory_(std::move(memory)),
       reader_(std::move(reader)),
-      map_serial_(connection_->welcome().map_serial()) {}
+      map_serial_(connection_->welcome().map_serial()),
+      zones_epoch_(connection_->welcome().map_epoch()) {}
 
 Result<Client> Client::connect(const std::string& socket, const std::string& name, int timeout_ms) {
   Result<Connection> opened = Connection::open(socket, name, timeout_ms);
@@ -74,7 +75,8 @@ Result<const wire::Reply*> Client::ask(MessageBuilder& message, flatbuffers::Off
 }
 
 Result<std::span<const ZoneInfo>> Client::zones() {
-  if (zones_serial_ == map_serial_) return std::span<const ZoneInfo>(zones_);
+  const bool same = zones_epoch_ == 0 || reader_.epoch() == zones_epoch_;
+  if (same && zones_serial_ == map_serial_) return std::span<const ZoneInfo>(zones_);
   const std::uint32_t serial = map_serial_;
   zones_serial_ = 0;
   zones_.clear();
@@ -91,6 +93,8 @@ Result<std::span<const ZoneInfo>> Client::zones() {
       zones_.push_back({zone->zone(), std::string(view_of(zone->name())),
                         std::string(view_of(zone->type())), zone->signatures()});
     }
+    if (first != 0 && part->map_epoch() != zones_epoch_) return ErrorCode::kMismatch;
+    zones_epoch_ = part->map_epoch();
     total = part->total();
     first += part->zones()->size();
   }

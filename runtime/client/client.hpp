@@ -80,10 +80,17 @@ class Client {
   Result<ZoneId> find_zone(std::string_view name);
 
   // Calls fn(const ZoneSignatures&) with the zone's signatures where they stand. Only after kOk was
-  // what fn read true; see SharedReader.
+  // what fn read true; see SharedReader. kAbsent too for a number that was looked up before the map
+  // changed: zones() and find_zone() tell the new one.
   template <typename Fn>
   ReadStatus read(ZoneId zone, Fn&& fn) {
-    return reader_.read(zone, std::forward<Fn>(fn));
+    if (zones_epoch_ != 0 && reader_.epoch() != zones_epoch_) return ReadStatus::kAbsent;
+    bool same = true;
+    const ReadStatus status = reader_.read(zone, [&](const ZoneSignatures& signatures) {
+      same = zones_epoch_ == 0 || reader_.epoch() == zones_epoch_;
+      if (same) fn(signatures);
+    });
+    return same ? status : ReadStatus::kAbsent;
   }
   SharedReader& reader() noexcept { return reader_; }
 
@@ -113,6 +120,7 @@ class Client {
   SharedReader reader_;
   std::uint32_t map_serial_;
   std::uint32_t zones_serial_ = 0;  // of zones_; 0: none asked for yet
+  std::uint32_t zones_epoch_ = 0;   // of the map that zone numbers are of; 0: zoned does not tell
   std::vector<ZoneInfo> zones_;
   std::string last_words_;
 };

@@ -42,6 +42,9 @@ class SharedReader {
   std::uint32_t zone_count() const noexcept { return tables_.zone_count(); }
   bool resident(ZoneId zone) const noexcept { return state_of(zone) != 0; }
 
+  // One more with every start of zoned and every map: zones are numbered anew.
+  std::uint32_t epoch() const noexcept { return tables_.epoch(); }
+
   // Calls fn(const ZoneSignatures&) unless the zone is absent. The first read of a zone since it
   // was loaded looks through it and allocates; later ones do not. What fn is given is valid until
   // it returns. fn may read other zones.

@@ -35,6 +35,10 @@ std::uint32_t SharedTables::zone_count() const noexcept {
   return std::min(zone_capacity_, header.zone_count.load(std::memory_order_acquire));
 }
 
+std::uint32_t SharedTables::epoch() const noexcept {
+  return reinterpret_cast<const SharedHeader*>(memory_)->epoch.load(std::memory_order_acquire);
+}
+
 SlotIndex SharedTables::link(SlotIndex slot) const noexcept {
   return read_once<SlotIndex>(memory_ + at_.links + std::size_t{slot} * sizeof(SlotIndex));
 }

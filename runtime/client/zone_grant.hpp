@@ -23,6 +23,7 @@ class SharedTables {
 
   std::uint32_t zone_capacity() const noexcept { return zone_capacity_; }
   std::uint32_t zone_count() const noexcept;  // of the map in use
+  std::uint32_t epoch() const noexcept;
   std::uint32_t slot_count() const noexcept { return slot_count_; }
 
   // `zone` is below zone_capacity().

@@ -80,6 +80,7 @@ int ctl_status(const std::string& socket, const std::string& json) {
     return written ? 0 : fail(json + ": cannot be written: " + to_string(written.error().code));
   }
   std::cout << WatchView::line(*status);
+  std::cout << "map version " << map_version(*status) << '\n';
   for (const std::string& complaint : complaints(*status)) std::cout << complaint << '\n';
   for (const Figure& figure : figures_of(*status)) {
     std::printf("%-22s %s\n", figure.key,

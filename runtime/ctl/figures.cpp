@@ -93,6 +93,12 @@ std::vector<Figure> figures_of(const wire::Status& s) {
       {"frozen", "zoned_frozen", kFlag, "Nothing is evicted, by command.", flag(s.frozen())},
       {"not_keeping_up", "zoned_not_keeping_up_total", kCounter,
        "Zones entered before they were in memory.", n(s.not_keeping_up())},
+      {"map_serial", "zoned_map_serial", kGauge, "Number of the map in use, 1 at the start.",
+       n(s.map_serial())},
+      {"map_changes", "zoned_map_changes_total", kCounter, "Other versions of the map taken.",
+       n(s.map_changes_total())},
+      {"map_refusals", "zoned_map_refusals_total", kCounter, "Versions of the map not taken.",
+       n(s.map_refusals_total())},
       {"budget_bytes", "zoned_budget_bytes", kGauge, "Hard limit of what grows with the map.",
        n(s.budget_bytes())},
       {"charged_bytes", "zoned_charged_bytes", kGauge, "Bytes charged against the budget.",
@@ -199,10 +205,21 @@ std::string metrics_text(const wire::Status& status) {
   return text;
 }
 
+std::string map_version(const wire::Status& status) {
+  if (status.map_version() == nullptr) return {};
+  std::string text;
+  for (const std::uint8_t byte : *status.map_version()) {
+    constexpr char kDigits[] = "0123456789abcdef";
+    text += {kDigits[byte >> 4], kDigits[byte & 15]};
+  }
+  return text;
+}
+
 std::string status_json(const wire::Status& status) {
   std::string text = "{\"zone\":";
   const std::string zone(view_of(status.zone()));
   text += zone.empty() ? "null" : json_quoted(zone);
+  text += ",\"map_version\":\"" + map_version(status) + "\"";
   text += ",\"pose\":" + pose_json(status.pose());
   for (const Figure& figure : figures_of(status)) {
     const bool is_flag = figure.kind == Kind::kFlag;

@@ -22,6 +22,8 @@ struct Figure {
 std::vector<Figure> figures_of(const wire::Status& status);
 
 // The status as one JSON object, and as Prometheus text (format 0.0.4).
+// The version of the map in use, in hex.
+std::string map_version(const wire::Status& status);
 std::string status_json(const wire::Status& status);
 std::string metrics_text(const wire::Status& status);
 

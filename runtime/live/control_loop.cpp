@@ -10,7 +10,8 @@
 namespace zonepack {
 namespace {
 
-constexpr std::uint64_t kFiguresEvery = 256;  // cycles
+constexpr std::uint64_t kFiguresEvery = 256;              // cycles
+constexpr std::uint64_t kOwnCommand = ~std::uint64_t{0};  // nobody waits for its reply
 
 }  // namespace
 
@@ -81,16 +82,20 @@ void ControlLoop::step(std::uint64_t cycle, std::int64_t began_ns) noexcept {
     loads_[loads++] = *load;
   }
   input.loads = {loads_.data(), loads};
-  std::size_t commands = 0;
-  if (ports_.commands != nullptr) {
-    while (commands < commands_.size() && ports_.commands->pop(commands_[commands])) ++commands;
-    ports_.overload.deferred_commands += ports_.commands->size() > 0;
+  input.commands = {commands_.data(), take_commands()};
+  MapInUse* const next = offered_.exchange(nullptr, std::memory_order_acq_rel);
+  if (next != nullptr) {
+    input.offer.map = next->number;
+  } else {
+    input.offer.fault = refused_.exchange(ErrorCode::kOk, std::memory_order_relaxed);
   }
-  input.commands = {commands_.data(), commands};
-  if (ports_.recorder != nullptr) ports_.recorder->on_inputs(cycle, input, offset_ns);
+  if (ports_.recorder != nullptr) {
+    ports_.recorder->on_inputs(cycle, input, offset_ns);
+    ports_.overload.lost_recordings = ports_.recorder->lost();
+  }
 
   const std::int64_t received_ns = monotonic_ns();
-  if (MapInUse* const next = offered_.exchange(nullptr, std::memory_order_acq_rel)) {
+  if (next != nullptr) {
     const bool taken = ports_.maps.offer(*next);
     ZP_REQUIRE(taken);
   }
@@ -104,6 +109,24 @@ void ControlLoop::step(std::uint64_t cycle, std::int64_t began_ns) noexcept {
   status_.bus = ports_.bus.status();
   publish(input, offset_ns);
   measure(input, cycle, {began_ns, received_ns, ran_ns, monotonic_ns()});
+}
+
+// Those that were asked for while another map was in use mean other zones: whoever asked was told
+// of the change.
+std::size_t ControlLoop::take_commands() noexcept {
+  std::size_t count = 0;
+  if (freed_.exchange(false, std::memory_order_acquire)) {
+    Command& freed = commands_[count++] = {};
+    freed.kind = Command::Kind::kMapFreed;
+    freed.id = kOwnCommand;
+  }
+  if (ports_.commands == nullptr) return count;
+  const std::uint32_t map = ports_.maps.map().number;
+  for (std::size_t i = count; i < commands_.size() && ports_.commands->pop(commands_[count]); ++i) {
+    count += commands_[count].map == 0 || commands_[count].map == map;
+  }
+  ports_.overload.deferred_commands += ports_.commands->size() > 0;
+  return count;
 }
 
 std::size_t ControlLoop::take_corrections(std::int64_t now_ns) noexcept {
@@ -122,7 +145,9 @@ std::size_t ControlLoop::take_corrections(std::int64_t now_ns) noexcept {
 
 void ControlLoop::answer() noexcept {
   if (ports_.replies == nullptr) return;
-  for (const CommandReply& reply : ports_.maps.map().cycle.replies()) {
+  for (CommandReply reply : ports_.maps.map().cycle.replies()) {
+    if (reply.id == kOwnCommand) continue;
+    reply.map = ports_.maps.map().number;
     ports_.overload.lost_replies += !ports_.replies->push(reply);
   }
 }

@@ -83,13 +83,18 @@ class ControlLoop {
   // Offers another map, once the one offered before was given back by take_unused(). One other
   // thread.
   bool offer(MapInUse& next) noexcept;
+  // One that was to be offered cannot be used: the cycle tells why. The same thread.
+  void offer_refused(ErrorCode fault) noexcept { refused_.store(fault, std::memory_order_relaxed); }
   // The map that is not used any more, once: after a change the one before, else the one offered.
   MapInUse* take_unused() noexcept { return unused_.exchange(nullptr, std::memory_order_acq_rel); }
+
+  // The tables of the map before a change are gone.
+  void map_freed() noexcept { freed_.store(true, std::memory_order_release); }
 
   // Cycles begun so far; any thread.
   std::uint64_t cycles() const noexcept { return cycles_.load(std::memory_order_relaxed); }
 
-  // After run() has returned.
+  // In the control thread, or after run() has returned.
   const Histogram& wakeup() const noexcept { return wakeup_; }
   const Histogram& work() const noexcept { return work_; }
   const LiveStatus& last_status() const noexcept { return status_; }
@@ -98,6 +103,7 @@ class ControlLoop {
  private:
   std::int64_t next_deadline(std::int64_t deadline_ns, std::int64_t began_ns) noexcept;
   void step(std::uint64_t cycle, std::int64_t began_ns) noexcept;
+  std::size_t take_commands() noexcept;
   std::size_t take_corrections(std::int64_t now_ns) noexcept;
   void answer() noexcept;
   void publish(const CycleInput& input, std::int64_t offset_ns) noexcept;
@@ -109,6 +115,8 @@ class ControlLoop {
   std::atomic<bool> stop_{false};
   std::atomic<MapInUse*> offered_{nullptr};
   std::atomic<MapInUse*> unused_{nullptr};
+  std::atomic<ErrorCode> refused_{ErrorCode::kOk};
+  std::atomic<bool> freed_{false};
   std::atomic<std::uint64_t> cycles_{0};
   std::vector<CanFrame> frames_;
   std::array<PoseCorrection, kMostCorrections> corrections_{};

@@ -3,9 +3,19 @@
 
 #include <iostream>
 #include <string>
+#include <string_view>
 
 namespace zonepack {
 namespace {
+
+std::string remedy_of(std::string_view reason) {
+  if (reason == "no room") {
+    return "; zonepack plan tells the budget with which maps change while the robot drives, and "
+           "where the robot's zone is small there may be room";
+  }
+  if (reason == "frozen") return "; zonectl unfreeze, then reload again";
+  return "; the robot goes on with it";
+}
 
 std::string line_of(const Event& event, const Catalog& catalog) {
   const std::string zone = event.zone == kNoZone ? std::string() : catalog.zones[event.zone].name;
@@ -15,6 +25,11 @@ std::string line_of(const Event& event, const Catalog& catalog) {
              catalog.zones[event.zone].pack + ": " + event.reason +
              "; it is tried again; build the map again or copy the pack again, zonepack verify "
              "tells more";
+    case EventKind::kMapChanged:
+      return "map changed: " + catalog.folder + " is in use, version " + to_hex(catalog.version);
+    case EventKind::kMapRefused:
+      return std::string("map not changed: ") + event.reason + "; version " +
+             to_hex(catalog.version) + " stays in use" + remedy_of(event.reason);
     case EventKind::kNotKeepingUp:
       return "not keeping up: the robot entered zone " + zone +
              " before it was loaded; drive slower, or raise the budget, preload.margin or the "
@@ -33,7 +48,7 @@ std::string line_of(const Event& event, const Catalog& catalog) {
 
 void EventTeller::on_event(const Event& event) noexcept {
   next_.on_event(event);
-  const std::string line = line_of(event, catalog_);
+  const std::string line = line_of(event, maps_.map().catalog());
   if (!line.empty()) std::cerr << "zoned: " + line + "\n";
 }
 

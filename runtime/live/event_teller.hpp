@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/event.hpp"
-#include "runtime/map/catalog.hpp"
+#include "runtime/replay/run_map.hpp"
 
 namespace zonepack {
 
@@ -11,12 +11,12 @@ namespace zonepack {
 class EventTeller final : public EventSink {
  public:
   // Both must outlive this object.
-  EventTeller(const Catalog& catalog, EventSink& next) : catalog_(catalog), next_(next) {}
+  EventTeller(const MapFollower& maps, EventSink& next) : maps_(maps), next_(next) {}
 
   void on_event(const Event& event) noexcept override;
 
  private:
-  const Catalog& catalog_;
+  const MapFollower& maps_;
   EventSink& next_;
 };
 

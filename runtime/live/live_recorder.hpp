@@ -35,6 +35,15 @@ class LiveRecorder final : public EventSink {
   bool open(const RecorderChoice& choice, const RecordingPreface& preface, std::size_t zones,
             std::uint32_t most_frames, std::string& fault, std::vector<std::string>& warnings);
 
+  // The map that events are of from here on. The scribe.
+  void change_map(std::uint32_t number, std::size_t zones) {
+    if (writer_) writer_->change_map(number, zones);
+  }
+  // A map that the run is going to be offered. Any thread.
+  void add_map(const RecordedMap& map) {
+    if (writer_) writer_->add_map(map);
+  }
+
   // Null when nothing is recorded.
   InputTap* tap() noexcept { return tap_.get(); }
   FlightRecorder* flight() noexcept { return flight_.get(); }

@@ -16,6 +16,7 @@
 #include "runtime/live/event_teller.hpp"
 #include "runtime/live/live_loader.hpp"
 #include "runtime/live/live_source.hpp"
+#include "runtime/live/map_change.hpp"
 #include "runtime/live/scribe.hpp"
 #include "runtime/live/service.hpp"
 #include "runtime/memory/shared_map.hpp"
@@ -41,26 +42,36 @@ LiveFigures::Timing timing_of(const Histogram& histogram) {
 
 // In the order in which the parts refer to each other.
 struct LiveRun::Parts {
-  Parts(RunInputs& run_inputs, const DrivenMap& driven, LiveMemory& live_memory,
+  Parts(RunInputs& run_inputs, std::shared_ptr<RunMap> map, LiveMemory& live_memory,
         const Notifier& run_notifier, const LiveOptions& run_options)
       : inputs(run_inputs),
-        map(driven),
+        terms_of_next(map->driven().terms_of_next(run_options.preface.terms)),
         zones_memory(live_memory),
         notifier(run_notifier),
         options(run_options),
         period_ns(map_terms({}, inputs.settings).period_ns),
         shared(live_memory.map()),
-        memory(map.needs.size(), map.limits),
-        loader(map.catalog, shared,
+        loader(map->catalog(), shared,
                {inputs.settings.loading.read, inputs.settings.loading.rate_limit}),
         notes(kNotes),
-        log([this](ZoneId zone) { return std::string_view(map.graph.name(zone)); }),
+        follower(
+            map, [this](std::uint32_t number) { return shelf.find(number); },
+            [this](const RunMap& next) { account_for(next); }),
+        log([this](ZoneId zone) {
+          return std::string_view(follower.map().driven().graph.name(zone));
+        }),
         recording(log),
         truth(inputs.truth ? &*inputs.truth : nullptr),
-        teller(map.catalog, recording),
-        recorder(map.graph, map.needs, truth, period_ns, map.limits, teller),
-        scribe(notes, recorder),
-        events(notes, live_memory.served() ? &service.events : nullptr, overload) {}
+        teller(follower, recording),
+        recorder(map->driven().graph, map->driven().needs, truth, period_ns, map->driven().limits,
+                 teller),
+        scribe(notes, follower, recorder),
+        events(notes, live_memory.served() ? &service.events : nullptr, overload) {
+    shelf.add(std::move(map));
+  }
+
+  std::shared_ptr<RunMap> first() const { return shelf.find(1); }
+  void account_for(const RunMap& next);
 
   bool open_source(std::string& fault);
   CanBus& bus();
@@ -75,15 +86,16 @@ struct LiveRun::Parts {
   void control() noexcept;
 
   RunInputs& inputs;
-  const DrivenMap& map;
+  MapTerms terms_of_next;
   LiveMemory& zones_memory;
   const Notifier& notifier;
   LiveOptions options;
   std::int64_t period_ns;
   SharedMap& shared;
-  Residency memory;
+  MapShelf shelf;
   LiveLoader loader;
   SpscQueue<LiveNote> notes;
+  MapFollower follower;  // the scribe's
   EventLog log;
   LiveRecorder recording;
   std::optional<StateStore> state_store;
@@ -98,14 +110,19 @@ struct LiveRun::Parts {
   Seqlock<LiveStatus> status;
   std::unique_ptr<LiveSource> source;
   std::unique_ptr<CanRecorder> can_recorder;
-  std::unique_ptr<Cycle> cycle;
-  std::optional<MapInUse> in_use;
   std::optional<MapRun> maps;
   std::unique_ptr<ControlLoop> loop;
+  std::optional<MapChange> change;
   Thread control_thread;
   std::atomic<bool> control_ended{false};
   std::atomic<int> lock_error{0};
 };
+
+void LiveRun::Parts::account_for(const RunMap& next) {
+  const DrivenMap& map = next.driven();
+  recording.change_map(next.number(), map.needs.size());
+  recorder.change_map(map.graph, map.needs, map.limits);
+}
 
 bool LiveRun::Parts::open_source(std::string& fault) {
   source = LiveSource::open({.choice = options.source,
@@ -150,11 +167,11 @@ bool LiveRun::Parts::place_at_start(std::string& fault) {
 void LiveRun::Parts::restore_state() {
   if (options.recorder.state_folder.empty()) return;
   state_store.emplace(options.recorder.state_folder);
-  const StateStore::Found found = state_store->load(map.catalog.lineage);
+  const Digest16 lineage = first()->catalog().lineage;
+  const StateStore::Found found = state_store->load(lineage);
   for (const std::string& note : found.notes) tell(note);
   SavedState next;
-  next.map_lineage = map.catalog.lineage;
-  next.map_version = map.catalog.version;
+  next.map_lineage = lineage;
   next.runs = 1 + (found.state ? found.state->runs : 0);
   if (found.state && options.start.kind == StartChoice::Kind::kFix) {
     const RestoredStart guess = guess_from(*found.state, inputs.settings.pose);
@@ -162,29 +179,35 @@ void LiveRun::Parts::restore_state() {
   }
   const auto look = [this] {
     const LiveStatus now = status.load();
-    return StateGlimpse{now.now_ns, now.state.pose, now.state.zone};
+    return StateGlimpse{now.now_ns, now.state.pose, now.state.map, now.state.zone};
   };
-  const auto name_of = [this](ZoneId zone) { return map.graph.name(zone); };
-  state_saver.emplace(*state_store, next, look, name_of, tell);
+  const auto place = [this](const StateGlimpse& glimpse, SavedState& state) {
+    const auto map = shelf.find(glimpse.map);
+    if (map == nullptr) return false;
+    state.map_version = map->catalog().version;
+    state.zone = glimpse.zone == kNoZone ? std::string() : map->driven().graph.name(glimpse.zone);
+    return true;
+  };
+  state_saver.emplace(*state_store, next, look, place, tell);
 }
 
 void LiveRun::Parts::begin_at(const RecordedStart& start) {
   options.preface.start = start;
   if (start.sigma_m && start.sigma_rad) {
-    cycle->start_at(start.now_ns, start.T_map_base, *start.sigma_m, *start.sigma_rad);
+    first()->cycle().start_at(start.now_ns, start.T_map_base, *start.sigma_m, *start.sigma_rad);
   } else {
-    cycle->start_at(start.now_ns, start.T_map_base);
+    first()->cycle().start_at(start.now_ns, start.T_map_base);
   }
 }
 
 bool LiveRun::Parts::open_recorder(std::string& fault) {
   std::vector<std::string> warnings;
-  const bool opened = recording.open(options.recorder, options.preface, map.needs.size(),
-                                     inputs.settings.cycle.most_frames, fault, warnings);
+  const bool opened =
+      recording.open(options.recorder, options.preface, first()->driven().needs.size(),
+                     inputs.settings.cycle.most_frames, fault, warnings);
   for (const std::string& warning : warnings) tell(warning);
   options.preface = {};
   if (!opened || recording.tap() == nullptr) return opened;
-  recording.tap()->follow(cycle->state());
   scribe.add_task([this] { recording.drain(); });
   return true;
 }
@@ -201,8 +224,7 @@ bool LiveRun::Parts::open_service(std::string& fault) {
       return dumped->bytes;
     };
   }
-  return service.open(settings, status, zones_memory, map.catalog, map.graph, map.pinned,
-                      map.limits.lease_ns, std::move(dump), fault);
+  return service.open(settings, status, zones_memory, first(), std::move(dump), fault);
 }
 
 ControlSettings LiveRun::Parts::control_settings() const {
@@ -258,9 +280,9 @@ bool LiveRun::Parts::start_threads(std::string& fault) {
   return true;
 }
 
-LiveRun::LiveRun(RunInputs& inputs, const DrivenMap& map, LiveMemory& memory,
+LiveRun::LiveRun(RunInputs& inputs, std::shared_ptr<RunMap> map, LiveMemory& memory,
                  const Notifier& notifier, const LiveOptions& options)
-    : parts_(std::make_unique<Parts>(inputs, map, memory, notifier, options)) {}
+    : parts_(std::make_unique<Parts>(inputs, std::move(map), memory, notifier, options)) {}
 
 LiveRun::~LiveRun() {
   if (parts_->loop) parts_->loop->stop();
@@ -275,16 +297,16 @@ bool LiveRun::start(std::string& fault) {
       return false;
     }
   }
-  const auto begun = p.shared.begin_map(static_cast<std::uint32_t>(p.map.needs.size()));
+  const auto map = p.first();
+  const auto begun = p.shared.begin_map(static_cast<std::uint32_t>(map->driven().needs.size()));
   ZP_REQUIRE(begun.ok());
-  if (!p.map.pin(p.memory, fault) || !p.open_source(fault)) return false;
-  p.cycle = std::make_unique<Cycle>(cycle_config(p.inputs.settings),
-                                    CycleParts{p.map.graph, p.map.needs, p.map.load_s, p.map.pinned,
-                                               p.memory, p.loader, p.events, &p.shared});
+  if (!map->prepare(cycle_config(p.inputs.settings), p.loader, p.events, &p.shared, fault) ||
+      !p.open_source(fault)) {
+    return false;
+  }
   if (!p.place_at_start(fault) || !p.open_recorder(fault) || !p.open_service(fault)) return false;
   const bool served = p.zones_memory.served();
-  p.in_use.emplace(MapInUse{p.map.catalog, p.map.graph, p.map.needs, p.memory, *p.cycle});
-  p.maps.emplace(*p.in_use, p.loader, &p.shared);
+  p.maps.emplace(map->in_use(), p.loader, &p.shared);
   p.loop = std::make_unique<ControlLoop>(
       p.control_settings(), ControlPorts{.clock = p.source->clock(),
                                          .bus = p.bus(),
@@ -298,6 +320,10 @@ bool LiveRun::start(std::string& fault) {
                                          .replies = served ? &p.service.replies : nullptr,
                                          .recorder = p.recording.tap(),
                                          .status = p.status});
+  if (p.recording.tap() != nullptr) p.recording.tap()->follow(p.loop->last_status().state);
+  p.change.emplace(MapChangePorts{p.inputs.settings, p.terms_of_next, p.shared,
+                                  p.inputs.settings.loading.read, p.loader, p.events, *p.loop,
+                                  p.shelf, p.recording, p.service, tell});
   return p.start_threads(fault);
 }
 
@@ -311,7 +337,17 @@ void LiveRun::wait() {
     if (tells) {
       if (const auto told = teller.tell(parts_->status.load().bus)) tell(*told);
     }
-    if (next_signal(monotonic_ns() + kWatch_ns) == Signal::kStop) parts_->loop->stop();
+    switch (next_signal(monotonic_ns() + kWatch_ns)) {
+      case Signal::kStop:
+        parts_->loop->stop();
+        break;
+      case Signal::kReload:
+        parts_->change->ask();
+        break;
+      case Signal::kNone:
+        break;
+    }
+    parts_->change->turn();
   }
 }
 
@@ -325,7 +361,7 @@ std::optional<RunSummary> LiveRun::finish(std::string& fault) {
             "; raise LimitMEMLOCK (ulimit -l) above the budget, or go on by --allow-degraded";
     return std::nullopt;
   }
-  p.cycle->finish();
+  p.maps->map().cycle.finish();
   p.loader.stop();
   p.source->stop();
   p.scribe.stop();
@@ -357,7 +393,8 @@ std::optional<RunSummary> LiveRun::finish(std::string& fault) {
   summary.event_log_hash = std::move(hash).value();
   LiveFigures live;
   live.process_peak_bytes = process_peak_bytes();
-  const ByteCount mapped = p.map.limits.fixed + p.map.slots * p.map.limits.slot_bytes;
+  const DrivenMap& map = p.follower.map().driven();
+  const ByteCount mapped = map.limits.fixed + map.slots * map.limits.slot_bytes;
   live.overhead_bytes = live.process_peak_bytes - std::min(mapped, live.process_peak_bytes);
   live.minor_faults = last.minor_faults;
   live.major_faults = last.major_faults;

@@ -11,8 +11,8 @@
 #include "runtime/live/can_source.hpp"
 #include "runtime/live/live_memory.hpp"
 #include "runtime/live/live_recorder.hpp"
-#include "runtime/replay/driven_map.hpp"
 #include "runtime/replay/run_inputs.hpp"
+#include "runtime/replay/run_map.hpp"
 #include "runtime/replay/run_summary.hpp"
 
 namespace zonepack {
@@ -32,16 +32,17 @@ struct LiveOptions {
 // Threads: all calls by the main thread, whose signals must be held (platform/signals.hpp).
 class LiveRun {
  public:
-  // All but the options must outlive this object.
-  LiveRun(RunInputs& inputs, const DrivenMap& map, LiveMemory& memory, const Notifier& notifier,
-          const LiveOptions& options);
+  // All but map and options must outlive this object. The map goes when another takes its place.
+  LiveRun(RunInputs& inputs, std::shared_ptr<RunMap> map, LiveMemory& memory,
+          const Notifier& notifier, const LiveOptions& options);
   ~LiveRun();
 
   // Reserves and locks memory and starts the threads. False when something is refused; `fault`
   // says what in a complete message, and nothing runs.
   bool start(std::string& fault);
 
-  // Until the source ends or a signal asks to stop.
+  // Until the source ends or a signal asks to stop; one that asks to reload takes another version
+  // of the map.
   void wait();
 
   // Ends the threads in order, and says how it went. Once, after start(); nothing with a complete

@@ -38,18 +38,19 @@ std::string state_folder(const Settings& settings) {
 
 // What a recording says before its first cycle. A complete message for what is wrong, or nothing.
 std::optional<std::string> make_preface(const RunArguments& arguments, const RunInputs& inputs,
-                                        const MapTerms& terms, RecordingPreface& preface) {
+                                        const Catalog& catalog, const MapTerms& terms,
+                                        RecordingPreface& preface) {
   preface.program = arguments.program;
   preface.realtime_ns = realtime_ns();
   preface.settings_path = arguments.config;
   preface.settings = inputs.settings_text;
   preface.dbc = inputs.settings.can.dbc_text;
-  preface.map_folder = inputs.catalog.folder;
+  preface.map_folder = catalog.folder;
   preface.terms = terms;
-  const std::string path = inputs.catalog.folder + "/" + std::string(kManifestName);
+  const std::string path = catalog.folder + "/" + std::string(kManifestName);
   auto manifest =
       read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail));
-  if (!manifest || manifest_digest(*manifest) != inputs.catalog.version) {
+  if (!manifest || manifest_digest(*manifest) != catalog.version) {
     return path + ": changed while zoned was starting; start it again";
   }
   preface.manifest = std::move(manifest).value();
@@ -74,16 +75,17 @@ int run_live(const RunArguments& arguments) {
   std::string fault;
   MapTerms terms = map_terms(arguments, inputs.settings);
   terms.lease_ns = static_cast<std::int64_t>(inputs.settings.serve.lease_s * 1e9);
-  const auto map = DrivenMap::make(inputs.catalog, terms, fault);
+  auto map = RunMap::make(1, std::move(inputs.catalog), terms, fault);
   if (!map) return fail(fault);
-  if (map->warning) std::cerr << "zoned run: warning: " << *map->warning << '\n';
+  const DrivenMap& driven = map->driven();
+  if (driven.warning) std::cerr << "zoned run: warning: " << *driven.warning << '\n';
 
   auto manager = Notifier::from_environment();
   if (!manager) std::cerr << "zoned run: NOTIFY_SOCKET: cannot be reached; nobody is told\n";
   const Notifier notifier = manager ? std::move(*manager) : Notifier();
   std::string warning;
   const auto memory = LiveMemory::open(
-      {zones_with_room_for_another_map(map->needs.size()), map->slots,
+      {zones_with_room_for_another_map(driven.needs.size()), driven.slots,
        socket_path(inputs.settings.serve),
        arguments.source.kind == CanSourceChoice::Kind::kSocketCan, &notifier, &handed},
       fault, warning);
@@ -95,8 +97,10 @@ int run_live(const RunArguments& arguments) {
       arguments.allow_degraded};
   options.recorder = {arguments.record, state_folder(inputs.settings),
                       inputs.settings.recorder.bytes};
-  if (const auto bad = make_preface(arguments, inputs, terms, options.preface)) return fail(*bad);
-  LiveRun run(inputs, *map, *memory, notifier, options);
+  if (const auto bad = make_preface(arguments, inputs, map->catalog(), terms, options.preface)) {
+    return fail(*bad);
+  }
+  LiveRun run(inputs, std::move(map), *memory, notifier, options);
   if (!run.start(fault)) return fail(fault);
   run.wait();
   auto summary = run.finish(fault);

@@ -8,6 +8,7 @@
 #include "platform/realtime.hpp"
 #include "platform/spsc_queue.hpp"
 #include "runtime/live/live_notes.hpp"
+#include "runtime/replay/run_map.hpp"
 #include "runtime/replay/run_recorder.hpp"
 
 namespace zonepack {
@@ -19,7 +20,9 @@ namespace zonepack {
 // Threads: the recorder, and all tasks, are the scribe's between start() and stop().
 class Scribe {
  public:
-  Scribe(SpscQueue<LiveNote>& notes, RunRecorder& recorder) : notes_(notes), recorder_(recorder) {}
+  // maps: is told of each note's before the recorder gets it. All outlive this object.
+  Scribe(SpscQueue<LiveNote>& notes, MapFollower& maps, RunRecorder& recorder)
+      : notes_(notes), maps_(maps), recorder_(recorder) {}
   ~Scribe() { stop(); }
 
   // A task is called every few milliseconds, and once more while stopping. Before start().
@@ -34,6 +37,7 @@ class Scribe {
   void drain();
 
   SpscQueue<LiveNote>& notes_;
+  MapFollower& maps_;
   RunRecorder& recorder_;
   std::vector<std::function<void()>> tasks_;
   std::atomic<bool> stop_{false};

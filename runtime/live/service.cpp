@@ -13,8 +13,7 @@ constexpr std::size_t kStack_bytes = 256 * 1024;
 }  // namespace
 
 bool Service::open(const ServeSettings& settings, const Seqlock<LiveStatus>& status,
-                   LiveMemory& memory, const Catalog& catalog, const ZoneGraph& graph,
-                   std::span<const ZoneId> pinned, std::int64_t lease_ns,
+                   LiveMemory& memory, std::shared_ptr<const RunMap> first,
                    std::function<Result<std::uint64_t>(int fd)> dump, std::string& fault) {
   SharedMap& map = memory.map();
   const ServerPorts ports{
@@ -25,10 +24,13 @@ bool Service::open(const ServeSettings& settings, const Seqlock<LiveStatus>& sta
       .poses = poses,
       .memory_fd = memory.reader_fd(),
       .lock_fd = memory.lock_fd(),
-      .lease_ns = lease_ns,
+      .map_epoch = map.epoch(),
+      .lease_ns = first->driven().limits.lease_ns,
       .resident_generation = [&map](ZoneId zone) { return map.generation(zone); },
       .dump = std::move(dump)};
-  server_ = Server::open(settings, ports, catalog, graph, pinned, fault);
+  served_ = std::move(first);
+  server_ = Server::open(settings, ports, served_->catalog(), served_->driven().graph,
+                         served_->driven().pinned, fault);
   return server_ != nullptr;
 }
 
@@ -50,8 +52,49 @@ void Service::stop() noexcept {
 void Service::run(const Notifier& notifier) {
   while (!stop_.load()) {
     server_->turn(Server::kTurn_ms);
+    change_maps();
     watch(notifier);
   }
+}
+
+bool Service::ready_for(const std::shared_ptr<const RunMap>& next) {
+  if (!server_) return true;
+  const std::lock_guard lock(mutex_);
+  if (known_ == next->number()) return true;
+  coming_ = next;
+  return false;
+}
+
+bool Service::done_with(std::uint32_t map) {
+  if (!server_) return true;
+  const std::lock_guard lock(mutex_);
+  if (gone_ == map) return true;
+  going_ = map;
+  return false;
+}
+
+// Behind a turn, which took the events: those of a map that the run is done with as well.
+void Service::change_maps() {
+  std::shared_ptr<const RunMap> coming;
+  std::uint32_t going = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    coming.swap(coming_);
+    going = std::exchange(asked_to_go_, std::exchange(going_, 0));
+  }
+  if (coming) {
+    const DrivenMap& map = coming->driven();
+    server_->offer_map(coming->number(), coming->catalog(), map.graph, map.pinned);
+    offered_ = std::move(coming);
+  }
+  if (going != 0) {
+    server_->forget_map(going);
+    if (served_->number() == going) served_ = std::move(offered_);
+    if (offered_ && offered_->number() == going) offered_.reset();
+  }
+  const std::lock_guard lock(mutex_);
+  if (offered_) known_ = offered_->number();
+  if (going != 0) gone_ = going;
 }
 
 void Service::watch(const Notifier& notifier) {

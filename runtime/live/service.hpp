@@ -4,6 +4,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 
@@ -11,6 +12,7 @@
 #include "platform/realtime.hpp"
 #include "platform/spsc_queue.hpp"
 #include "runtime/live/live_memory.hpp"
+#include "runtime/replay/run_map.hpp"
 #include "runtime/serve/server.hpp"
 
 namespace zonepack {
@@ -27,9 +29,14 @@ class Service {
 
   // Starts to listen; false with a complete message in `fault`.
   bool open(const ServeSettings& settings, const Seqlock<LiveStatus>& status, LiveMemory& memory,
-            const Catalog& catalog, const ZoneGraph& graph, std::span<const ZoneId> pinned,
-            std::int64_t lease_ns, std::function<Result<std::uint64_t>(int fd)> dump,
+            std::shared_ptr<const RunMap> map, std::function<Result<std::uint64_t>(int fd)> dump,
             std::string& fault);
+
+  // A change of map, by one thread that asks until the answer is true. Before the offer: the server
+  // knows the map. After it: the server has let go of this one.
+  bool ready_for(const std::shared_ptr<const RunMap>& next);
+  bool done_with(std::uint32_t map);
+
   Result<void> start(const Notifier& notifier, std::function<std::uint64_t()> cycles);
   void stop() noexcept;
 
@@ -41,7 +48,15 @@ class Service {
  private:
   void run(const Notifier& notifier);
   void watch(const Notifier& notifier);
+  void change_maps();
 
+  // The server's thread holds the maps that the server refers to.
+  std::shared_ptr<const RunMap> served_, offered_;
+  std::mutex mutex_;                      // of what follows
+  std::shared_ptr<const RunMap> coming_;  // asked for
+  std::uint32_t known_ = 0;               // the last one that the server was told of
+  std::uint32_t going_ = 0, gone_ = 0;    // asked to be let go of; let go of last
+  std::uint32_t asked_to_go_ = 0;         // a turn ago: its events were taken since
   std::unique_ptr<Server> server_;
   std::function<std::uint64_t()> cycles_;
   std::uint64_t cycles_seen_ = 0;

@@ -50,6 +50,7 @@ Result<Catalog> Catalog::read(ByteSpan file, const std::string& folder, PayloadM
       entry.decoded_bytes += bytes->decoded();
     }
     entry.pack = zone->pack()->str();
+    entry.pack_bytes = zone->pack_bytes();
     std::copy(zone->pack_digest()->begin(), zone->pack_digest()->end(), entry.pack_digest.begin());
   }
   if (manifest.portals() != nullptr) {

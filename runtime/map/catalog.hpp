@@ -20,7 +20,8 @@ struct CatalogZone {
   std::uint32_t slots = 0;     // for the payload the catalog was opened for
   ByteCount stored_bytes = 0;  // to read for that payload
   ByteCount decoded_bytes = 0;
-  std::string pack;  // file name in the map's folder
+  std::string pack;          // file name in the map's folder
+  ByteCount pack_bytes = 0;  // of that file
   Digest32 pack_digest{};
 };
 

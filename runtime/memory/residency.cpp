@@ -30,8 +30,8 @@ ByteCount Residency::table_bytes(std::size_t zones) noexcept {
 
 Residency::Residency(std::size_t zones, const ResidencyLimits& limits)
     : limits_(limits),
-      slot_count_(std::min(slots_within(limits.budget, limits.fixed, limits.slot_bytes),
-                           limits.most_slots)),
+      paid_slots_(slots_within(limits.budget, limits.fixed, limits.slot_bytes)),
+      slot_count_(std::min(paid_slots_, limits.most_slots)),
       records_(zones),
       links_(zones),
       timer_links_(zones),
@@ -46,7 +46,8 @@ bool Residency::fits(ZoneNeed need, NeedSum available) const noexcept {
 }
 
 NeedSum Residency::free() const noexcept {
-  return {slot_count_ - used_.slots - set_aside_, signature_limit(limits_) - used_.signatures};
+  return {std::min(paid_slots_ - set_aside_, slot_count_ - set_aside_slots_) - used_.slots,
+          signature_limit(limits_) - used_.signatures};
 }
 
 Result<void> Residency::check(ZoneId zone, ZoneNeed need, Purpose purpose) const noexcept {
@@ -69,12 +70,16 @@ Result<void> Residency::check(ZoneId zone, ZoneNeed need, Purpose purpose) const
 Result<void> Residency::set_aside(ByteCount bytes, std::uint32_t slots) noexcept {
   const std::uint64_t all =
       slots + (bytes + limits_.slot_bytes - 1) / std::max<ByteCount>(limits_.slot_bytes, 1);
-  if (all > free().slots) return {ErrorCode::kNoRoom, static_cast<std::int64_t>(all)};
+  const NeedSum now = free();
+  if (slots > now.slots || all > paid_slots_ - set_aside_ - used_.slots) {
+    return {ErrorCode::kNoRoom, static_cast<std::int64_t>(all)};
+  }
   set_aside_ = all;
+  set_aside_slots_ = slots;
   return {};
 }
 
-void Residency::give_up_set_aside() noexcept { set_aside_ = 0; }
+void Residency::give_up_set_aside() noexcept { set_aside_ = set_aside_slots_ = 0; }
 
 Result<Eviction> Residency::drop(ZoneId zone) noexcept {
   if (records_[zone].state != ZoneState::kResident) return ErrorCode::kNotFound;

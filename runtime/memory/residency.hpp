@@ -196,7 +196,8 @@ class Residency {
   void end_leases(ZoneId zone) noexcept;
 
   ResidencyLimits limits_;
-  std::uint32_t slot_count_;
+  std::uint32_t paid_slots_;  // that the budget has room for
+  std::uint32_t slot_count_;  // of these, that there are
   std::vector<Record> records_;
   std::vector<ZoneLink> links_;
   std::vector<ZoneLink> timer_links_;
@@ -206,7 +207,8 @@ class Residency {
   NeedSum used_;
   NeedSum resident_;
   NeedSum pinned_;
-  std::uint64_t set_aside_ = 0;  // slots, or the bytes of as many
+  std::uint64_t set_aside_ = 0;        // slots, or the bytes of as many
+  std::uint64_t set_aside_slots_ = 0;  // of these, real ones
   bool frozen_ = false;
   ResidencyCounters counters_;
 };

@@ -35,6 +35,9 @@ class SharedMap final : public ZoneDirectory {
   // The load that can be read now; nothing when the zone cannot be. Any thread.
   std::optional<std::uint32_t> generation(ZoneId zone) const noexcept;
 
+  // One more with every start of zoned and every map.
+  std::uint32_t epoch() const noexcept { return header_->epoch.load(std::memory_order_acquire); }
+
   std::uint32_t slot_count() const noexcept { return header_->slot_count; }
   std::uint32_t zone_capacity() const noexcept { return header_->zone_capacity; }
   std::span<std::byte> slot(SlotIndex index) noexcept;

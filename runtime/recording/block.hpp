@@ -14,10 +14,16 @@ namespace zonepack {
 
 inline constexpr std::uint8_t kRecordingMagic[8] = {0x89, 'Z', 'P', 'R', '\r', '\n', 0x1A, '\n'};
 inline constexpr std::uint16_t kRecordingMajor = 1;
-inline constexpr std::uint16_t kRecordingMinor = 0;
+inline constexpr std::uint16_t kRecordingMinor = 1;
 inline constexpr std::size_t kRecordingHeaderBytes = 16;
 
-enum class BlockKind : std::uint8_t { kPreface = 1, kCycles = 2, kCheckpoint = 3, kEnd = 4 };
+enum class BlockKind : std::uint8_t {
+  kPreface = 1,
+  kCycles = 2,
+  kCheckpoint = 3,
+  kEnd = 4,
+  kMap = 5,
+};
 // Blocks of this kind and above may be passed over by a reader that does not know them.
 inline constexpr std::uint8_t kFirstNoteBlock = 128;
 

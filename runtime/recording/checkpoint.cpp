@@ -9,7 +9,7 @@
 namespace zonepack {
 namespace {
 
-constexpr std::uint8_t kHasPose = 1, kFrozen = 2;
+constexpr std::uint8_t kHasPose = 1, kFrozen = 2, kOtherMap = 4;
 constexpr std::size_t kFixedRoom = 256;
 constexpr std::size_t kZoneRoom = 10;  // two varints of 32 bits
 constexpr std::size_t kMostZones = (kMostBlockBytes - kFixedRoom) / kZoneRoom / 2;
@@ -37,8 +37,10 @@ std::vector<std::byte> write_checkpoint(const Checkpoint& checkpoint) {
   out.u64(checkpoint.cycle);
   out.i64(checkpoint.now_ns);
   out.i64(checkpoint.start_ns);
+  const bool other_map = checkpoint.map != 1 || checkpoint.offered_map != 0;
   out.u8(static_cast<std::uint8_t>((checkpoint.has_pose ? kHasPose : 0) |
-                                   (checkpoint.frozen ? kFrozen : 0)));
+                                   (checkpoint.frozen ? kFrozen : 0) |
+                                   (other_map ? kOtherMap : 0)));
   out.f64(checkpoint.T_map_base.x_m);
   out.f64(checkpoint.T_map_base.y_m);
   out.f64(checkpoint.T_map_base.yaw_rad);
@@ -53,6 +55,10 @@ std::vector<std::byte> write_checkpoint(const Checkpoint& checkpoint) {
   }
   write_zones(checkpoint.pinned, out);
   write_zones(checkpoint.route, out);
+  if (other_map) {
+    out.u32(checkpoint.map);
+    out.u32(checkpoint.offered_map);
+  }
   ZP_REQUIRE(out.ok());
   bytes.resize(out.size());
   return bytes;
@@ -80,9 +86,14 @@ Result<Checkpoint> read_checkpoint(ByteSpan content) {
     const ZoneId zone = in.varint32();
     checkpoint.resident.push_back({zone, in.varint32()});
   }
-  if (!read_zones(in, checkpoint.pinned) || !read_zones(in, checkpoint.route) || !in.finished()) {
+  if (!read_zones(in, checkpoint.pinned) || !read_zones(in, checkpoint.route)) {
     return ErrorCode::kBadStructure;
   }
+  if ((flags & kOtherMap) != 0) {
+    checkpoint.map = in.u32();
+    checkpoint.offered_map = in.u32();
+  }
+  if (!in.finished()) return ErrorCode::kBadStructure;
   return checkpoint;
 }
 
@@ -92,7 +103,17 @@ void RunMirror::use(ZoneId zone) {
   if (zones_[zone].used != 0) zones_[zone].used = ++clock_;
 }
 
+void RunMirror::change_map(std::uint32_t map, std::size_t zones) {
+  map_ = map;
+  zones_.assign(zones, {});
+  pinned_.clear();
+  route_.clear();
+}
+
 void RunMirror::on_event(const Event& event) {
+  if (event.kind == EventKind::kMapChanged || event.kind == EventKind::kMapRefused) {
+    offered_map_ = 0;
+  }
   if (event.zone >= zones_.size()) return;
   switch (event.kind) {
     case EventKind::kLoadDone:
@@ -139,6 +160,8 @@ void RunMirror::on_commands(std::span<const Command> commands) {
 
 void RunMirror::describe(Checkpoint& checkpoint) const {
   checkpoint.resident.clear();
+  if (checkpoint.map != map_) return;
+  checkpoint.offered_map = offered_map_;
   for (ZoneId zone = 0; zone < zones_.size(); ++zone) {
     if (zones_[zone].used != 0) checkpoint.resident.push_back({zone, zones_[zone].generation});
   }

@@ -27,7 +27,9 @@ struct Checkpoint {
   bool has_pose = false;
   Pose2 T_map_base;
   double sigma_m = 0, sigma_rad = 0;
-  ZoneId zone = kNoZone;  // the robot's own
+  std::uint32_t map = 1;          // number in the run of the map in use
+  std::uint32_t offered_map = 0;  // that is to take its place; 0: none
+  ZoneId zone = kNoZone;          // the robot's own
   bool frozen = false;
   std::vector<Held> resident;  // used longest ago first
   std::vector<ZoneId> pinned;  // asked for, beside those of the settings
@@ -47,8 +49,13 @@ class RunMirror {
 
   void on_event(const Event& event);
   void on_commands(std::span<const Command> commands);
+  void on_offer(std::uint32_t map) { offered_map_ = map; }
 
-  // Fills resident, pinned, route and frozen.
+  // Another map is in use; its number.
+  void change_map(std::uint32_t map, std::size_t zones);
+
+  // Fills resident, pinned, route, frozen and the map on offer, as far as they are of the map that
+  // `checkpoint` says.
   void describe(Checkpoint& checkpoint) const;
 
  private:
@@ -58,6 +65,8 @@ class RunMirror {
     std::uint64_t used = 0;  // 0: not resident
     std::uint32_t generation = 0;
   };
+  std::uint32_t map_ = 1;
+  std::uint32_t offered_map_ = 0;
   std::vector<Entry> zones_;  // by ZoneId
   std::uint64_t clock_ = 0;
   std::vector<ZoneId> pinned_;

@@ -101,6 +101,30 @@ void FlightRecorder::drop_oldest() {
   segments_.pop_front();
 }
 
+// A map is needed by what stands behind its offer, and by what begins while it is in use.
+void FlightRecorder::drop_unused_maps() {
+  if (segments_.empty()) return;
+  const Segment& oldest = *segments_.front();
+  std::erase_if(maps_, [&](const std::shared_ptr<Map>& map) {
+    if (map->cycle >= oldest.first_cycle || map->number == oldest.map) return false;
+    std::error_code ignored;
+    if (!map->path.empty()) fs::remove(map->path, ignored);
+    return true;
+  });
+}
+
+void FlightRecorder::add_map(std::uint32_t number, ByteSpan blocks, std::uint64_t cycle) {
+  const std::lock_guard lock(mutex_);
+  const std::string name = flight_map_name(number);
+  Result<AppendFile> file = make_file(folder_, named_, name);
+  if (!file) return fail(file.error());
+  auto map = std::make_shared<Map>(
+      Map{std::move(file).value(), named_ ? folder_ + "/" + name : std::string(), number, cycle});
+  if (const auto written = map->file.append(blocks); !written) return fail(written.error());
+  map->file.settle();
+  maps_.push_back(std::move(map));
+}
+
 void FlightRecorder::begin_segment(const Checkpoint& checkpoint, bool after_gap) {
   std::vector<std::byte> block;
   seal_block(BlockKind::kCheckpoint, write_checkpoint(checkpoint), block);
@@ -112,9 +136,10 @@ void FlightRecorder::begin_segment(const Checkpoint& checkpoint, bool after_gap)
   if (!file) return fail(file.error());
   auto segment = std::make_shared<Segment>(
       Segment{std::move(file).value(), named_ ? folder_ + "/" + name : std::string(),
-              checkpoint.cycle, after_gap || (broken_ && !segments_.empty())});
+              checkpoint.cycle, checkpoint.map, after_gap || (broken_ && !segments_.empty())});
   const Result<void> written = segment->file.append(block);
   segments_.push_back(std::move(segment));
+  drop_unused_maps();
   if (!written) return fail(written.error());
   next_cycle_ = checkpoint.cycle;
   broken_ = false;
@@ -129,13 +154,14 @@ void FlightRecorder::append(ByteSpan block, std::uint64_t next_cycle) {
   next_cycle_ = next_cycle;
 }
 
-std::deque<FlightRecorder::Part> FlightRecorder::parts() const {
-  std::deque<Part> parts;
+// Those that follow each other without a gap up to now.
+std::deque<std::shared_ptr<FlightRecorder::Segment>> FlightRecorder::whole_segments() const {
+  std::deque<std::shared_ptr<Segment>> whole;
   for (auto segment = segments_.rbegin(); segment != segments_.rend(); ++segment) {
-    parts.push_front({*segment, (*segment)->file.size()});
+    whole.push_front(*segment);
     if ((*segment)->after_gap) break;
   }
-  return parts;
+  return whole;
 }
 
 Result<FlightRecorder::Dumped> FlightRecorder::dump(const std::string& path) const {
@@ -149,20 +175,25 @@ Result<FlightRecorder::Dumped> FlightRecorder::dump(const std::string& path) con
 
 Result<FlightRecorder::Dumped> FlightRecorder::dump_to(int fd) const {
   Dumped dumped;
-  std::deque<Part> kept;
+  std::vector<Part> kept;
   {
     const std::lock_guard lock(mutex_);
-    kept = parts();
+    const auto segments = whole_segments();
     dumped.next_cycle = next_cycle_;
+    if (segments.empty() || segments.front()->first_cycle == dumped.next_cycle) {
+      return ErrorCode::kNotFound;
+    }
+    dumped.first_cycle = segments.front()->first_cycle;
+    const auto keep = [&](const auto& owner) {
+      kept.push_back({std::shared_ptr<const AppendFile>(owner, &owner->file), owner->file.size()});
+    };
+    for (const auto& map : maps_) keep(map);
+    for (const auto& segment : segments) keep(segment);
   }
-  if (kept.empty() || kept.front().segment->first_cycle == dumped.next_cycle) {
-    return ErrorCode::kNotFound;
-  }
-  dumped.first_cycle = kept.front().segment->first_cycle;
   Result<void> done = copy(preface_, preface_.size(), fd);
   dumped.bytes = preface_.size();
   for (const Part& part : kept) {
-    if (done) done = copy(part.segment->file, part.size, fd);
+    if (done) done = copy(*part.file, part.size, fd);
     dumped.bytes += part.size;
   }
   std::vector<std::byte> end;
@@ -176,6 +207,7 @@ Result<FlightRecorder::Dumped> FlightRecorder::dump_to(int fd) const {
 ByteCount FlightRecorder::kept_bytes() const {
   const std::lock_guard lock(mutex_);
   ByteCount bytes = preface_.size();
+  for (const auto& map : maps_) bytes += map->file.size();
   for (const auto& segment : segments_) bytes += segment->file.size();
   return bytes;
 }

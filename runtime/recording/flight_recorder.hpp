@@ -18,7 +18,8 @@
 namespace zonepack {
 
 // The last part of a recording, always at hand: a ring of files of equal size, each beginning with
-// a checkpoint, of which the oldest goes when a new one begins.
+// a checkpoint, of which the oldest goes when a new one begins. Maps that the run was offered have
+// files of their own, which go with the cycles that need them.
 //
 // The files stand in a folder and survive a crash, or have no names and go with the process. The
 // folder of the run before is kept beside it as NAME-previous.
@@ -28,8 +29,8 @@ class FlightRecorder {
   static constexpr std::uint64_t kSegments = 8;
   static constexpr ByteCount kLeastBytes = kSegments * AppendFile::kSettleBytes;
 
-  // Keeps at most `bytes` in files named in `folder` (made when missing; its own old files are
-  // moved), or without names in `folder` when `named` is false. kIo with errno.
+  // Keeps at most `bytes` of cycles in files named in `folder` (made when missing; its own old
+  // files are moved), or without names in `folder` when `named` is false. kIo with errno.
   static Result<std::unique_ptr<FlightRecorder>> open(const std::string& folder, bool named,
                                                       ByteCount bytes,
                                                       const RecordingPreface& preface);
@@ -38,6 +39,8 @@ class FlightRecorder {
   bool wants_segment() const noexcept;
   // Begins a segment. After a gap what stands before it is no longer part of a dump.
   void begin_segment(const Checkpoint& checkpoint, bool after_gap);
+  // A map that cycle `cycle` was offered: its blocks. Before the cycle's own block.
+  void add_map(std::uint32_t number, ByteSpan blocks, std::uint64_t cycle);
   // A block of cycles that ends before cycle `next_cycle`.
   void append(ByteSpan block, std::uint64_t next_cycle);
 
@@ -61,10 +64,17 @@ class FlightRecorder {
     AppendFile file;
     std::string path;  // empty: no name
     std::uint64_t first_cycle = 0;
+    std::uint32_t map = 1;  // in use before it
     bool after_gap = false;
   };
-  struct Part {  // of a segment, as a dump takes it
-    std::shared_ptr<Segment> segment;
+  struct Map {
+    AppendFile file;
+    std::string path;
+    std::uint32_t number = 0;
+    std::uint64_t cycle = 0;  // that was offered it
+  };
+  struct Part {  // of a file, as a dump takes it
+    std::shared_ptr<const AppendFile> file;
     std::uint64_t size = 0;
   };
 
@@ -76,7 +86,8 @@ class FlightRecorder {
 
   void fail(Error error);
   void drop_oldest();
-  std::deque<Part> parts() const;
+  void drop_unused_maps();
+  std::deque<std::shared_ptr<Segment>> whole_segments() const;
 
   std::string folder_;
   bool named_;
@@ -84,6 +95,7 @@ class FlightRecorder {
   AppendFile preface_;
   mutable std::mutex mutex_;  // of what follows
   std::deque<std::shared_ptr<Segment>> segments_;
+  std::deque<std::shared_ptr<Map>> maps_;
   std::uint64_t segment_number_ = 0;
   std::uint64_t next_cycle_ = 0;
   bool broken_ = true;  // the newest segment takes no more

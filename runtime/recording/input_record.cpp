@@ -6,7 +6,8 @@
 namespace zonepack {
 namespace {
 
-// A new member of these must be written and read below, or a recording would not hold it.
+// A new member of these must be written and read below, or a recording would not hold it. (Not
+// Command::map: what is not of the map in use never becomes an input.)
 static_assert(sizeof(Command) == 296 && sizeof(LoadResult) == 40 && sizeof(PoseCorrection) == 64);
 
 constexpr std::uint8_t kExtended = 1, kFd = 2, kRtr = 4, kErrorFrame = 8, kHasFlags = 16;
@@ -69,6 +70,11 @@ void write_commands(const CycleInput& input, ByteWriter& out) noexcept {
   }
 }
 
+void write_offer(const CycleInput& input, ByteWriter& out) noexcept {
+  out.varint(input.offer.map);
+  out.varint(static_cast<std::uint16_t>(input.offer.fault));
+}
+
 template <typename Write>
 void write_record(RecordKind kind, bool present, const CycleInput& input, ByteWriter& out,
                   Write write) noexcept {
@@ -116,12 +122,18 @@ bool read_correction(ByteReader& in, std::int64_t now_ns, PoseCorrection& fix) {
   return in.ok();
 }
 
+bool read_code(ByteReader& in, ErrorCode& code) {
+  const std::uint64_t number = in.varint();
+  if (number > static_cast<std::uint16_t>(ErrorCode::kCancelled)) return false;
+  code = static_cast<ErrorCode>(number);
+  return true;
+}
+
 bool read_load(ByteReader& in, LoadResult& load) {
   load.zone = in.varint32();
   load.generation = in.varint32();
-  const std::uint64_t code = in.varint();
-  if (code > static_cast<std::uint16_t>(ErrorCode::kCancelled)) return false;
-  load.error = {static_cast<ErrorCode>(code), in.zigzag()};
+  if (!read_code(in, load.error.code)) return false;
+  load.error.detail = in.zigzag();
   load.slots = {0, 0, in.varint32()};
   return in.ok();
 }
@@ -158,6 +170,9 @@ bool read_record(RecordKind kind, ByteReader in, RecordedInput& into) {
       return read_items(in, into.loads, kMostRecordedLoads, read_load);
     case RecordKind::kCommands:
       return read_items(in, into.commands, Cycle::kMostCommands, read_command);
+    case RecordKind::kOffer:
+      into.offer.map = in.varint32();
+      return read_code(in, into.offer.fault) && in.finished();
   }
   return false;
 }
@@ -173,6 +188,8 @@ void write_records(const CycleInput& input, ByteWriter& out) noexcept {
   write_record(RecordKind::kCorrections, !input.corrections.empty(), input, out, write_corrections);
   write_record(RecordKind::kLoads, !input.loads.empty(), input, out, write_loads);
   write_record(RecordKind::kCommands, !input.commands.empty(), input, out, write_commands);
+  const bool offered = input.offer.map != 0 || input.offer.fault != ErrorCode::kOk;
+  write_record(RecordKind::kOffer, offered, input, out, write_offer);
 }
 
 Result<void> read_records(ByteSpan records, RecordedInput& into) {
@@ -180,6 +197,7 @@ Result<void> read_records(ByteSpan records, RecordedInput& into) {
   into.corrections.clear();
   into.loads.clear();
   into.commands.clear();
+  into.offer = {};
   ByteReader in(records);
   while (in.ok() && !in.at_end()) {
     const std::uint8_t kind = in.u8();
@@ -187,7 +205,7 @@ Result<void> read_records(ByteSpan records, RecordedInput& into) {
     if (!in.ok()) break;
     if (kind >= kFirstNoteKind) continue;
     if (kind < static_cast<std::uint8_t>(RecordKind::kFrames) ||
-        kind > static_cast<std::uint8_t>(RecordKind::kCommands)) {
+        kind > static_cast<std::uint8_t>(RecordKind::kOffer)) {
       return {ErrorCode::kBadVersion, kind};
     }
     if (!read_record(static_cast<RecordKind>(kind), ByteReader(content), into)) {

@@ -12,7 +12,13 @@
 // What one cycle was given, as RECORDING.md lays it out under "Records".
 namespace zonepack {
 
-enum class RecordKind : std::uint8_t { kFrames = 1, kCorrections = 2, kLoads = 3, kCommands = 4 };
+enum class RecordKind : std::uint8_t {
+  kFrames = 1,
+  kCorrections = 2,
+  kLoads = 3,
+  kCommands = 4,
+  kOffer = 5,
+};
 // Records of this kind and above may be passed over by a reader that does not know them; any other
 // unknown record is an input that would be missing.
 inline constexpr std::uint8_t kFirstNoteKind = 128;
@@ -39,7 +45,9 @@ struct RecordedInput {
   std::vector<LoadResult> loads;  // slots: {0, 0, count}
   std::vector<Command> commands;
 
-  CycleInput view() const noexcept { return {now_ns, frames, corrections, loads, commands}; }
+  MapOffer offer;
+
+  CycleInput view() const noexcept { return {now_ns, frames, corrections, loads, commands, offer}; }
 };
 
 // Replaces all but now_ns, to which stamps are relative. kBadStructure for what write_records does

@@ -21,12 +21,14 @@ void InputTap::on_inputs(std::uint64_t cycle, const CycleInput& input,
   head.cycle = cycle;
   head.now_ns = input.now_ns;
   head.clock_offset_ns = clock_offset_ns;
+  head.offered_map = input.offer.map;
   if (state_ != nullptr) {
     const PoseEstimate& pose = state_->pose;
     head.T_map_base = pose.T_map_base;
     head.sigma_m = position_sigma_m(pose.covariance);
     head.sigma_rad = std::sqrt(std::max(0.0, pose.covariance.yaw_yaw));
     head.zone = state_->zone;
+    head.map = state_->map;
     head.has_pose = pose.valid;
   }
   ByteWriter records(scratch_);

@@ -21,6 +21,8 @@ struct TappedCycle {
     std::int64_t clock_offset_ns = 0;  // CLOCK_REALTIME minus the run's clock
     Pose2 T_map_base;
     double sigma_m = 0, sigma_rad = 0;
+    std::uint32_t map = 1;          // number in the run of the map in use
+    std::uint32_t offered_map = 0;  // that the cycle was offered; 0: none
     ZoneId zone = kNoZone;
     bool has_pose = false;
   };
@@ -55,7 +57,7 @@ class InputTap final : public InputSink {
   // The most that records of a next() can take.
   std::size_t most_cycle_bytes() const noexcept { return scratch_.size(); }
 
-  std::uint64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
+  std::uint64_t lost() const noexcept override { return lost_.load(std::memory_order_relaxed); }
 
  private:
   ByteRing ring_;

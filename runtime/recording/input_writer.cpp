@@ -30,11 +30,13 @@ void InputWriter::take_all(std::int64_t now_ns) {
 
 void InputWriter::take(const TappedCycle& cycle, std::int64_t now_ns) {
   if (cycle.head.cycle == 0) start_ns_ = cycle.head.now_ns;
-  if (!block_.continues(cycle.head.cycle)) end_block();
+  const bool offered = cycle.head.offered_map != 0;
+  if (offered || !block_.continues(cycle.head.cycle)) end_block();
   if (block_.empty()) {
     begin_block(cycle);
     block_began_ns_ = now_ns;
   }
+  if (offered) write_offered(cycle);
   block_.add(cycle);
   next_cycle_ = cycle.head.cycle + 1;
   if (flight_ != nullptr && !cycle.records.empty()) {
@@ -57,9 +59,31 @@ void InputWriter::begin_block(const TappedCycle& cycle) {
   checkpoint.T_map_base = head.T_map_base;
   checkpoint.sigma_m = head.sigma_m;
   checkpoint.sigma_rad = head.sigma_rad;
+  checkpoint.map = head.map;
   checkpoint.zone = head.zone;
   mirror_.describe(checkpoint);
   flight_->begin_segment(checkpoint, gap);
+}
+
+void InputWriter::add_map(const RecordedMap& map) {
+  std::vector<std::byte> blocks = write_map(map);
+  const std::lock_guard lock(mutex_);
+  coming_.emplace_back(map.number, std::move(blocks));
+}
+
+void InputWriter::write_offered(const TappedCycle& cycle) {
+  mirror_.on_offer(cycle.head.offered_map);
+  std::vector<std::byte> blocks;
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& [number, bytes] : coming_) {
+      if (number == cycle.head.offered_map) blocks = std::move(bytes);
+    }
+    coming_.clear();
+  }
+  if (blocks.empty()) return;
+  if (file_ != nullptr) file_->append(blocks);
+  if (flight_ != nullptr) flight_->add_map(cycle.head.offered_map, blocks, cycle.head.cycle);
 }
 
 void InputWriter::end_block() {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 #include "runtime/event.hpp"
@@ -9,6 +11,7 @@
 #include "runtime/recording/cycle_block.hpp"
 #include "runtime/recording/flight_recorder.hpp"
 #include "runtime/recording/input_tap.hpp"
+#include "runtime/recording/map_block.hpp"
 #include "runtime/recording/recording_file.hpp"
 
 namespace zonepack {
@@ -30,6 +33,12 @@ class InputWriter {
   // For checkpoints: what the run tells, as it comes.
   void on_event(const Event& event) { mirror_.on_event(event); }
 
+  // The map that events are of from here on.
+  void change_map(std::uint32_t number, std::size_t zones) { mirror_.change_map(number, zones); }
+
+  // A map that a cycle to come will be offered; any thread.
+  void add_map(const RecordedMap& map);
+
   // Takes what the tap holds; writes the blocks that became full or old. now_ns: CLOCK_MONOTONIC.
   void drain(std::int64_t now_ns);
   // The same, and writes what is left.
@@ -44,6 +53,7 @@ class InputWriter {
   void take_all(std::int64_t now_ns);
   void take(const TappedCycle& cycle, std::int64_t now_ns);
   void begin_block(const TappedCycle& cycle);
+  void write_offered(const TappedCycle& cycle);
   void end_block();
 
   InputTap& tap_;
@@ -56,6 +66,8 @@ class InputWriter {
   std::int64_t block_began_ns_ = 0;  // CLOCK_MONOTONIC
   std::int64_t start_ns_ = 0;        // the run's clock, of cycle 0
   std::uint64_t next_cycle_ = 0;
+  std::mutex mutex_;                                                      // of what follows
+  std::vector<std::pair<std::uint32_t, std::vector<std::byte>>> coming_;  // maps as blocks
 };
 
 }  // namespace zonepack

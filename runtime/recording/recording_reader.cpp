@@ -125,7 +125,12 @@ bool RecordingReader::read_start(std::string& fault) {
     return false;
   }
   content = {};
-  for (; kind == static_cast<std::uint8_t>(BlockKind::kCheckpoint); kind = read_block(error)) {
+  for (;; kind = read_block(error)) {
+    if (kind == static_cast<std::uint8_t>(BlockKind::kMap)) {
+      (void)maps_.add(block_);  // one that is not whole is missing where it is needed
+      continue;
+    }
+    if (kind != static_cast<std::uint8_t>(BlockKind::kCheckpoint)) break;
     Result<Checkpoint> checkpoint = read_checkpoint(block_);
     if (checkpoint && is_time(checkpoint->now_ns) && is_time(checkpoint->start_ns))
       checkpoint_ = std::move(checkpoint).value();
@@ -177,6 +182,9 @@ bool RecordingReader::next_block() {
              ", those between were lost");
         return false;
       case BlockKind::kCheckpoint:
+        continue;
+      case BlockKind::kMap:
+        (void)maps_.add(block_);
         continue;
       case BlockKind::kEnd: {
         Result<RecordingEnd> end = read_end(block_);

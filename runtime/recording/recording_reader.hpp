@@ -9,6 +9,7 @@
 #include "platform/storage.hpp"
 #include "runtime/recording/checkpoint.hpp"
 #include "runtime/recording/cycle_block.hpp"
+#include "runtime/recording/map_block.hpp"
 #include "runtime/recording/preface.hpp"
 #include "runtime/recording/recording_end.hpp"
 
@@ -17,7 +18,7 @@ namespace zonepack {
 // Reads a recording from its first cycle to the last that can be vouched for. Whatever the bytes
 // are, the cycles given are whole, checked, and follow each other without a gap.
 //
-// Memory: the preface and one block.   Threads: one; allocates.
+// Memory: the preface, the maps and one block.   Threads: one; allocates.
 class RecordingReader {
  public:
   // A recording, or the folder of a flight recorder. Nothing when it cannot be read up to its first
@@ -28,6 +29,9 @@ class RecordingReader {
   // Where the run stood before the first cycle; nothing when that is cycle 0.
   const std::optional<Checkpoint>& checkpoint() const noexcept { return checkpoint_; }
   std::uint64_t first_cycle() const noexcept { return next_cycle_first_; }
+
+  // A map that the last next(), or the checkpoint, refers to by its number; null: it is missing.
+  const RecordedMap* map(std::uint32_t number) const noexcept { return maps_.find(number); }
 
   // The next cycle, valid until the next call; null at the end.
   const RecordedInput* next();
@@ -57,6 +61,7 @@ class RecordingReader {
   std::uint64_t offset_ = 0;
   RecordingPreface preface_;
   std::optional<Checkpoint> checkpoint_;
+  RecordedMaps maps_;
   std::optional<RecordingEnd> end_;
   std::vector<std::byte> stored_;
   std::vector<std::byte> block_;

@@ -22,10 +22,13 @@ bool find_pins(const Catalog& catalog, const std::vector<std::string>& names,
 }
 
 std::uint32_t slots_to_reserve(const std::vector<ZoneNeed>& needs, const ResidencyLimits& limits) {
-  std::uint64_t all = 0;
-  for (const ZoneNeed& need : needs) all += need.slots;
+  std::uint64_t all = 0, largest = 0;
+  for (const ZoneNeed& need : needs) {
+    all += need.slots;
+    largest = std::max<std::uint64_t>(largest, need.slots);
+  }
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(
-      all, Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes)));
+      all + largest, Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes)));
 }
 
 }  // namespace
@@ -36,6 +39,7 @@ std::unique_ptr<DrivenMap> DrivenMap::make(const Catalog& catalog, const MapTerm
   if (!find_pins(catalog, terms.pinned, pinned, fault)) return nullptr;
   ResidencyLimits limits = limits_for(catalog, terms.budget, terms.max_signatures, pinned);
   limits.lease_ns = terms.lease_ns;
+  if (terms.slots) limits.most_slots = *terms.slots;
   if (const auto refused = refusal(catalog, limits)) {
     fault = *refused;
     return nullptr;
@@ -43,10 +47,17 @@ std::unique_ptr<DrivenMap> DrivenMap::make(const Catalog& catalog, const MapTerm
   std::vector<ZoneNeed> needs = needs_of(catalog);
   std::vector<LoadWork> work = work_of(catalog);
   std::vector<float> load_s = load_times_of(work, terms.rates, terms.period_ns);
-  const std::uint32_t slots = slots_to_reserve(needs, limits);
+  const std::uint32_t slots = terms.slots.value_or(slots_to_reserve(needs, limits));
   return std::unique_ptr<DrivenMap>(
       new DrivenMap{catalog, std::move(pinned), limits, graph_of(catalog), std::move(needs),
                     std::move(work), std::move(load_s), slots, tightness(catalog, limits)});
+}
+
+MapTerms DrivenMap::terms_of_next(const MapTerms& terms) const {
+  MapTerms next = terms;
+  next.budget = limits.budget;
+  next.slots = slots;
+  return next;
 }
 
 bool DrivenMap::pin(Residency& memory, std::string& fault) const {

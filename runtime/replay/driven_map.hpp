@@ -22,6 +22,7 @@ struct MapTerms {
   LoadRates rates{};
   std::int64_t period_ns = 10'000'000;
   std::int64_t lease_ns = 0;
+  std::optional<std::uint32_t> slots{};  // that there are; nothing: as many as are of use
 };
 
 // A map in the shape in which the cycle takes it, with the limits to hold. Immutable; the catalog
@@ -34,12 +35,16 @@ struct DrivenMap {
   std::vector<ZoneNeed> needs;
   std::vector<LoadWork> work;
   std::vector<float> load_s;
-  std::uint32_t slots;                 // to reserve: no more than all zones together fill
+  // To reserve: no more than all zones fill together, and another version's largest beside them.
+  std::uint32_t slots;
   std::optional<std::string> warning;  // a complete message
 
   // Null when the map cannot be held on these terms; `fault` says why in a complete message.
   static std::unique_ptr<DrivenMap> make(const Catalog& catalog, const MapTerms& terms,
                                          std::string& fault);
+
+  // How another version of the map is to be held in this one's place: no more of anything.
+  MapTerms terms_of_next(const MapTerms& terms) const;
 
   // Pins what is to be pinned in a new Residency; false with a complete message in `fault`.
   bool pin(Residency& memory, std::string& fault) const;

@@ -99,12 +99,18 @@ std::optional<std::string> refusal(const Catalog& catalog, const ResidencyLimits
   if (catalog.zones.empty()) return std::nullopt;
   const std::uint64_t slots =
       Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes);
+  const auto place = std::min<std::uint64_t>(slots, limits.most_slots);
   const CatalogZone& widest = *std::ranges::max_element(catalog.zones, {}, &CatalogZone::slots);
   if (widest.slots > slots) {
     return "zone " + widest.name + " takes " + std::to_string(widest.slots * limits.slot_bytes) +
            " bytes beside " + std::to_string(limits.fixed) +
            " for tables and buffers, over the budget of " + format_byte_count(limits.budget) +
            "; " + remedy(catalog);
+  }
+  if (widest.slots > place) {
+    return "zone " + widest.name + " takes " + std::to_string(widest.slots) + " slots of " +
+           std::to_string(kSlotBytes) + " bytes, over the " + std::to_string(place) +
+           " that were reserved when zoned started; start it again with this map";
   }
   const CatalogZone& fullest =
       *std::ranges::max_element(catalog.zones, {}, &CatalogZone::signatures);
@@ -118,8 +124,8 @@ std::optional<std::string> refusal(const Catalog& catalog, const ResidencyLimits
 }
 
 std::optional<std::string> tightness(const Catalog& catalog, const ResidencyLimits& limits) {
-  const std::uint64_t slots =
-      Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes);
+  const auto slots = std::min<std::uint64_t>(
+      Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes), limits.most_slots);
   for (const CatalogPortal& portal : catalog.portals) {
     const CatalogZone &a = catalog.zones[portal.zone_a], &b = catalog.zones[portal.zone_b];
     const NeedSum pair = pair_of(a, b);

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "runtime/map/catalog.hpp"
 #include "runtime/zone_loader.hpp"
 
 namespace zonepack {
@@ -11,10 +12,16 @@ namespace zonepack {
 // from the recording. Remembers what the cycle asked for, to tell whether a result is an answer.
 class RecordedLoader final : public ZoneLoader {
  public:
-  void load(const LoadRequest& request) noexcept override { asked_ = request; }
+  // Must outlive this object, like every one that it is told to use.
+  explicit RecordedLoader(const Catalog& catalog) : catalog_(&catalog) {}
+
+  void load(const LoadRequest& request) noexcept override {
+    asked_ = request;
+    asked_of_ = catalog_;
+  }
   void cancel() noexcept override {}
   void take_back(SlotChain) noexcept override {}
-  void use(const Catalog&) noexcept override {}
+  void use(const Catalog& catalog) noexcept override { catalog_ = &catalog; }
   std::optional<LoadResult> poll() noexcept override { return std::nullopt; }
 
   const std::optional<LoadRequest>& asked() const noexcept { return asked_; }
@@ -24,12 +31,21 @@ class RecordedLoader final : public ZoneLoader {
     const bool right = asked_ && result.zone == asked_->zone &&
                        result.generation == asked_->generation &&
                        (result.error.code != ErrorCode::kOk || result.slots.count == asked_->slots);
-    if (right) asked_.reset();
-    return right;
+    if (!right) return false;
+    asked_.reset();
+    if (result.error.code == ErrorCode::kOk) {
+      bytes_loaded_ += asked_of_->zones[result.zone].stored_bytes;
+    }
+    return true;
   }
 
+  ByteCount bytes_loaded() const noexcept { return bytes_loaded_; }
+
  private:
+  const Catalog* catalog_;
+  const Catalog* asked_of_ = nullptr;
   std::optional<LoadRequest> asked_;
+  ByteCount bytes_loaded_ = 0;
 };
 
 }  // namespace zonepack

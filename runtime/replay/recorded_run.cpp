@@ -2,14 +2,17 @@
 #include "runtime/replay/recorded_run.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "platform/base/require.hpp"
 #include "runtime/event_log.hpp"
-#include "runtime/replay/driven_map.hpp"
+#include "runtime/map_run.hpp"
 #include "runtime/replay/recorded_loader.hpp"
 #include "runtime/replay/run_inputs.hpp"
+#include "runtime/replay/run_map.hpp"
 #include "runtime/replay/run_recorder.hpp"
 #include "runtime/replay/run_result.hpp"
 #include "runtime/replay/timed_loader.hpp"
@@ -17,73 +20,119 @@
 namespace zonepack {
 namespace {
 
+// A map that the run was offered.
+std::shared_ptr<RunMap> map_of(const RecordingReader& recording, const Settings& settings,
+                               const MapTerms& terms, std::uint32_t number, std::string& fault) {
+  const std::string which = "map " + std::to_string(number) + ", which the run was offered, ";
+  const RecordedMap* const recorded = recording.map(number);
+  if (recorded == nullptr) {
+    fault = which + "is not in the recording";
+    return nullptr;
+  }
+  auto catalog = Catalog::read(recorded->manifest, recorded->folder, settings.memory.payload.mask);
+  if (!catalog) {
+    fault = which + "cannot be used: " + to_string(catalog.error().code);
+    return nullptr;
+  }
+  return RunMap::make(number, std::move(catalog).value(), terms, fault);
+}
+
 // All that one run needs, in the order in which the parts refer to each other.
-class Run {
+class Run final : public EventSink {
  public:
-  Run(RecordingReader& recording, const RecordedRun& run, const DrivenMap& map)
+  Run(RecordingReader& recording, const RecordedRun& run, std::shared_ptr<RunMap> map)
       : recording_(recording),
-        map_(map),
-        guess_(run.settings.pose),
+        settings_(run.settings),
+        terms_(map->driven().terms_of_next(recording.preface().terms)),
         exact_(!recording.checkpoint()),
-        memory_(map.needs.size(), map.limits),
-        timed_(map.work, recording.preface().terms.rates),
-        log_([this](ZoneId zone) { return std::string_view(map_.graph.name(zone)); }),
-        recorder_(map.graph, map.needs, nullptr, recording.preface().terms.period_ns, map.limits,
-                  log_),
-        cycle_(cycle_config(run.settings),
-               {map.graph, map.needs, map.load_s, map.pinned, memory_, loader(), recorder_}) {}
+        first_(map),
+        maps_in_use_{map},
+        recorded_(map->catalog()),
+        timed_(map->driven().work, terms_.rates),
+        follower_(
+            map, [this](std::uint32_t number) { return find(number); },
+            [this](const RunMap& next) {
+              recorder_.change_map(next.driven().graph, next.driven().needs, next.driven().limits);
+            }),
+        log_([this](ZoneId zone) {
+          return std::string_view(follower_.map().driven().graph.name(zone));
+        }),
+        recorder_(map->driven().graph, map->driven().needs, nullptr, terms_.period_ns,
+                  map->driven().limits, log_) {}
+
+  void on_event(const Event& event) noexcept override {
+    follower_.follow(event.map);
+    recorder_.on_event(event);
+  }
 
   std::optional<RecordedRunResult> drive(const std::string& events_path, std::string& fault);
 
  private:
   ZoneLoader& loader() { return exact_ ? static_cast<ZoneLoader&>(recorded_) : timed_; }
+  RunMap& first() { return *first_; }
+  std::shared_ptr<RunMap> find(std::uint32_t number) const;
+  bool prepare(RunMap& map, std::string& fault);
+  bool begin_with(const RunMap& map, std::string& fault);
   void begin();
   void go_on_from(const Checkpoint& checkpoint);
   bool run_cycles(std::string& fault);
+  bool offer(std::uint32_t number, std::string& fault);
   bool answers(const RecordedInput& input, std::string& fault);
   bool take_loads(const RecordedInput& input, std::string& fault);
   void take_commands(const RecordedInput& input);
   std::optional<RecordedRunResult> result(const std::string& events_path, std::string& fault);
 
   RecordingReader& recording_;
-  const DrivenMap& map_;
-  const PoseFilterSettings& guess_;
+  const Settings& settings_;
+  const MapTerms terms_;  // of maps that the run is offered
   const bool exact_;
-  Residency memory_;
+  const std::shared_ptr<RunMap> first_;               // drawings stay on its ground
+  std::vector<std::shared_ptr<RunMap>> maps_in_use_;  // in use, on offer
   RecordedLoader recorded_;
   TimedLoader timed_;  // from a checkpoint
+  MapFollower follower_;
   EventLog log_;
   RunRecorder recorder_;
-  Cycle cycle_;
+  std::optional<MapRun> maps_;
   std::vector<LoadResult> loads_;  // of the cycle
   std::vector<Command> commands_;  // of the cycle
   std::vector<Command> waiting_;   // for the cycles to come
   std::uint64_t frames_ = 0;
-  ByteCount bytes_loaded_ = 0;
 };
+
+std::shared_ptr<RunMap> Run::find(std::uint32_t number) const {
+  const auto found = std::ranges::find(maps_in_use_, number, &RunMap::number);
+  return found == maps_in_use_.end() ? nullptr : *found;
+}
+
+bool Run::prepare(RunMap& map, std::string& fault) {
+  return map.prepare(cycle_config(settings_), loader(), *this, nullptr, fault);
+}
 
 void Run::begin() {
   const std::optional<RecordedStart>& start = recording_.preface().start;
   if (!start) return;
   if (start->sigma_m && start->sigma_rad) {
-    cycle_.start_at(start->now_ns, start->T_map_base, *start->sigma_m, *start->sigma_rad);
+    first().cycle().start_at(start->now_ns, start->T_map_base, *start->sigma_m, *start->sigma_rad);
   } else {
-    cycle_.start_at(start->now_ns, start->T_map_base);
+    first().cycle().start_at(start->now_ns, start->T_map_base);
   }
 }
 
 void Run::go_on_from(const Checkpoint& checkpoint) {
   for (const Checkpoint::Held& held : checkpoint.resident) {
-    if (held.zone >= map_.needs.size()) continue;
-    if (memory_.restore(held.zone, map_.needs[held.zone], held.generation)) {
+    const std::vector<ZoneNeed>& needs = first().driven().needs;
+    if (held.zone >= needs.size()) continue;
+    if (first().memory().restore(held.zone, needs[held.zone], held.generation)) {
       recorder_.begin_with(held.zone);
     }
   }
-  cycle_.continue_from(checkpoint.cycle, checkpoint.start_ns);
+  Cycle& cycle = first().cycle();
+  cycle.continue_from(checkpoint.cycle, checkpoint.start_ns);
   if (checkpoint.has_pose) {
-    cycle_.start_at(checkpoint.now_ns, checkpoint.T_map_base,
-                    std::max(checkpoint.sigma_m, guess_.start_sigma_m),
-                    std::max(checkpoint.sigma_rad, guess_.start_sigma_rad));
+    cycle.start_at(checkpoint.now_ns, checkpoint.T_map_base,
+                   std::max(checkpoint.sigma_m, settings_.pose.start_sigma_m),
+                   std::max(checkpoint.sigma_rad, settings_.pose.start_sigma_rad));
   }
   const auto add = [&](Command::Kind kind, ZoneId zone) {
     Command& command = waiting_.emplace_back();
@@ -106,11 +155,12 @@ bool Run::answers(const RecordedInput& input, std::string& fault) {
     const std::optional<LoadRequest> asked = recorded_.asked();
     if (recorded_.answer(load)) continue;
     const auto told = [&](ZoneId zone, std::uint32_t generation) {
+      const ZoneGraph& graph = follower_.map().driven().graph;
       const std::string name =
-          zone < map_.needs.size() ? map_.graph.name(zone) : "number " + std::to_string(zone);
+          zone < graph.zone_count() ? graph.name(zone) : "number " + std::to_string(zone);
       return "zone " + name + " (generation " + std::to_string(generation) + ")";
     };
-    fault = "diverged at cycle " + std::to_string(cycle_.state().cycles) +
+    fault = "diverged at cycle " + std::to_string(maps_->map().cycle.state().cycles) +
             ": recorded is what became of a load of " + told(load.zone, load.generation) +
             ", but here " + (asked ? told(asked->zone, asked->generation) : std::string("none")) +
             " was asked for; replay with the version that recorded it, " +
@@ -130,9 +180,6 @@ bool Run::take_loads(const RecordedInput& input, std::string& fault) {
     timed_.advance_to(input.now_ns);
     while (const auto load = timed_.poll()) loads_.push_back(*load);
   }
-  for (const LoadResult& load : loads_) {
-    if (load.error.code == ErrorCode::kOk) bytes_loaded_ += map_.work[load.zone].stored_bytes;
-  }
   return true;
 }
 
@@ -149,10 +196,29 @@ bool Run::run_cycles(std::string& fault) {
   while (const RecordedInput* const recorded = recording_.next()) {
     if (!take_loads(*recorded, fault)) return false;
     take_commands(*recorded);
-    cycle_.run({recorded->now_ns, recorded->frames, recorded->corrections, loads_, commands_});
+    if (recorded->offer.map != 0 && !offer(recorded->offer.map, fault)) return false;
+    maps_->run({recorded->now_ns, recorded->frames, recorded->corrections, loads_, commands_,
+                recorded->offer});
     frames_ += recorded->frames.size();
-    recorder_.after_cycle(record_of(recorded->now_ns, cycle_.state(), memory_));
+    const MapInUse& map = maps_->map();
+    follower_.follow(map.number);
+    recorder_.after_cycle(record_of(recorded->now_ns, map.cycle.state(), map.memory));
+    if (const MapInUse* const unused = maps_->take_unused()) {
+      std::erase_if(maps_in_use_, [&](const auto& kept) { return &kept->in_use() == unused; });
+    }
   }
+  return true;
+}
+
+bool Run::offer(std::uint32_t number, std::string& fault) {
+  if (find(number) != nullptr || maps_->changing()) {
+    fault = "map " + std::to_string(number) + " was offered while another was";
+    return false;
+  }
+  auto map = map_of(recording_, settings_, terms_, number, fault);
+  if (map == nullptr || !prepare(*map, fault)) return false;
+  maps_in_use_.push_back(map);
+  ZP_REQUIRE(maps_->offer(map->in_use()));
   return true;
 }
 
@@ -163,14 +229,17 @@ std::optional<RecordedRunResult> Run::drive(const std::string& events_path, std:
       return std::nullopt;
     }
   }
-  if (!map_.pin(memory_, fault)) return std::nullopt;
+  if (!prepare(first(), fault)) return std::nullopt;
+  maps_.emplace(first().in_use(), loader(), nullptr);
   if (exact_) {
     begin();
   } else {
     go_on_from(*recording_.checkpoint());
   }
+  const std::uint32_t on_offer = exact_ ? 0 : recording_.checkpoint()->offered_map;
+  if (on_offer != 0 && !offer(on_offer, fault)) return std::nullopt;
   if (!run_cycles(fault)) return std::nullopt;
-  cycle_.finish();
+  maps_->map().cycle.finish();
   return result(events_path, fault);
 }
 
@@ -183,12 +252,12 @@ std::optional<RecordedRunResult> Run::result(const std::string& events_path, std
   RecordedRunResult result;
   RunSummary& summary = result.replay.summary;
   recorder_.summarise(summary);
-  summarise_cycle(cycle_, summary);
-  summary.bytes_loaded = bytes_loaded_;
+  summarise_cycle(maps_->map().cycle, summary);
+  summary.bytes_loaded = exact_ ? recorded_.bytes_loaded() : timed_.bytes_loaded();
   summary.can_frames = frames_;
   summary.event_log_hash = std::move(hash).value();
   result.replay.trace = recorder_.take_trace();
-  describe_map(map_, result.replay.trace);
+  describe_map(first().driven(), result.replay.trace);
   result.first_cycle = recording_.first_cycle();
   result.next_cycle = recording_.cycles_read();
   result.complete = recording_.complete();
@@ -221,9 +290,16 @@ std::optional<RecordedRunResult> replay_recording(RecordingReader& recording,
                                                   const RecordedRun& run,
                                                   const std::string& events_path,
                                                   std::string& fault) {
-  const auto map = DrivenMap::make(run.catalog, recording.preface().terms, fault);
-  if (!map) return std::nullopt;
-  return Run(recording, run, *map).drive(events_path, fault);
+  const RecordingPreface& preface = recording.preface();
+  std::shared_ptr<RunMap> map = RunMap::make(1, run.catalog, preface.terms, fault);
+  if (map == nullptr) return std::nullopt;
+  const std::uint32_t in_use = recording.checkpoint() ? recording.checkpoint()->map : 1;
+  if (in_use != 1) {
+    map =
+        map_of(recording, run.settings, map->driven().terms_of_next(preface.terms), in_use, fault);
+    if (map == nullptr) return std::nullopt;
+  }
+  return Run(recording, run, std::move(map)).drive(events_path, fault);
 }
 
 }  // namespace zonepack

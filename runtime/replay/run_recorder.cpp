@@ -18,19 +18,43 @@ double percentile(const std::vector<float>& sorted, double share) {
 }  // namespace
 
 CycleRecord record_of(std::int64_t now_ns, const CycleState& state, const Residency& memory) {
-  return {now_ns, state, memory.used_sum(), memory.resident_sum(), memory.counters()};
+  return {now_ns,          state, memory.used_sum(), memory.resident_sum(), memory.counters(),
+          memory.charged()};
 }
 
 RunRecorder::RunRecorder(const ZoneGraph& graph, std::span<const ZoneNeed> needs,
                          const TruthTrack* truth, std::int64_t period_ns,
                          const ResidencyLimits& limits, EventSink& log)
-    : graph_(graph),
+    : graph_(&graph),
       needs_(needs),
       truth_(truth),
       period_ns_(period_ns),
       limits_(limits),
       log_(log),
       held_(needs.size(), Held::kNot) {}
+
+void RunRecorder::change_map(const ZoneGraph& graph, std::span<const ZoneNeed> needs,
+                             const ResidencyLimits& limits) {
+  if (drawn_names_.empty()) {
+    for (ZoneId zone = 0; zone < needs_.size(); ++zone) drawn_names_.push_back(graph_->name(zone));
+  }
+  drawn_.clear();
+  for (ZoneId zone = 0; zone < needs.size(); ++zone) {
+    const auto same = std::ranges::find(drawn_names_, graph.name(zone));
+    drawn_.push_back(same == drawn_names_.end() ? kNoZone
+                                                : static_cast<ZoneId>(same - drawn_names_.begin()));
+  }
+  graph_ = &graph;
+  needs_ = needs;
+  limits_ = limits;
+  held_.assign(needs.size(), Held::kNot);
+  true_zone_ = kNoZone;
+}
+
+// As the drawing names it.
+ZoneId RunRecorder::drawn(ZoneId zone) const noexcept {
+  return drawn_names_.empty() || zone == kNoZone ? zone : drawn_[zone];
+}
 
 void RunRecorder::begin_with(ZoneId zone) noexcept {
   held_[zone] = Held::kResident;
@@ -40,7 +64,7 @@ void RunRecorder::begin_with(ZoneId zone) noexcept {
 void RunRecorder::on_event(const Event& event) noexcept {
   log_.on_event(event);
   trace_.events.push_back(
-      {static_cast<double>(event.t_ns) * 1e-9, to_string(event.kind), event.zone});
+      {static_cast<double>(event.t_ns) * 1e-9, to_string(event.kind), drawn(event.zone)});
   switch (event.kind) {
     case EventKind::kLoadStarted:
       held_[event.zone] = Held::kCharged;
@@ -79,7 +103,8 @@ void RunRecorder::after_cycle(const CycleRecord& cycle) {
 void RunRecorder::check_limits(const CycleRecord& cycle) {
   peak_.slots = std::max(peak_.slots, charged_.slots);
   peak_.signatures = std::max(peak_.signatures, charged_.signatures);
-  const bool over_bytes = limits_.fixed > limits_.budget ||
+  peak_bytes_ = std::max(peak_bytes_, cycle.charged_bytes);
+  const bool over_bytes = limits_.fixed > limits_.budget || cycle.charged_bytes > limits_.budget ||
                           charged_.slots * limits_.slot_bytes > limits_.budget - limits_.fixed;
   const bool over_signatures =
       limits_.max_signatures > 0 && charged_.signatures > limits_.max_signatures;
@@ -94,11 +119,11 @@ void RunRecorder::watch_zone(const CycleRecord& cycle) {
   ZoneId own = state.zone;
   if (true_pose_) {
     const Point2 place{true_pose_->x_m, true_pose_->y_m};
-    const ZoneId holding = graph_.zone_at(place);
+    const ZoneId holding = graph_->zone_at(place);
     if (holding != kNoZone) true_zone_ = holding;
     own = true_zone_;
     wrong_cycles_ += true_zone_ != kNoZone && state.zone != kNoZone && state.zone != true_zone_ &&
-                     graph_.depth_m(true_zone_, place) > kWrongDepth_m;
+                     graph_->depth_m(true_zone_, place) > kWrongDepth_m;
   } else {
     true_zone_ = kNoZone;
   }
@@ -116,8 +141,8 @@ void RunRecorder::keep_sample(const CycleRecord& cycle) {
   sample.estimate = state.pose.T_map_base;
   sample.has_truth = true_pose_.has_value();
   if (true_pose_) sample.truth = *true_pose_;
-  sample.tracked_zone = state.zone;
-  sample.true_zone = true_zone_;
+  sample.tracked_zone = drawn(state.zone);
+  sample.true_zone = drawn(true_zone_);
   sample.zone_absent = absent_;
   sample.blocked = state.blocked;
   sample.charged_bytes = limits_.fixed + charged_.slots * limits_.slot_bytes;
@@ -145,7 +170,8 @@ double RunRecorder::seconds(std::uint64_t cycles) const noexcept {
 
 void RunRecorder::summarise(RunSummary& summary) const {
   summary.budget_bytes = limits_.budget;
-  summary.peak_charged_bytes = limits_.fixed + peak_.slots * limits_.slot_bytes;
+  summary.peak_charged_bytes =
+      std::max(limits_.fixed + peak_.slots * limits_.slot_bytes, peak_bytes_);
   summary.budget_violations = violations_;
   summary.max_signatures = limits_.max_signatures;
   summary.peak_signatures = peak_.signatures;

@@ -23,6 +23,7 @@ struct CycleRecord {
   NeedSum charged;   // as Residency counts
   NeedSum resident;  // of that, usable
   ResidencyCounters counters;
+  ByteCount charged_bytes = 0;  // everything, also what is set aside for a change of map
 };
 CycleRecord record_of(std::int64_t now_ns, const CycleState& state, const Residency& memory);
 
@@ -37,6 +38,11 @@ class RunRecorder final : public EventSink {
   // truth may be null; everything must outlive this object. Events are passed on to `log`.
   RunRecorder(const ZoneGraph& graph, std::span<const ZoneNeed> needs, const TruthTrack* truth,
               std::int64_t period_ns, const ResidencyLimits& limits, EventSink& log);
+
+  // Another map is in use from the next event on. Drawings stay on the first one's ground; its
+  // zones go by their names there.
+  void change_map(const ZoneGraph& graph, std::span<const ZoneNeed> needs,
+                  const ResidencyLimits& limits);
 
   // A zone that is resident before the first cycle, of which no event tells.
   void begin_with(ZoneId zone) noexcept;
@@ -56,16 +62,19 @@ class RunRecorder final : public EventSink {
   void check_limits(const CycleRecord& cycle);
   void watch_zone(const CycleRecord& cycle);
   void keep_sample(const CycleRecord& cycle);
+  ZoneId drawn(ZoneId zone) const noexcept;
   double seconds(std::uint64_t cycles) const noexcept;
 
-  const ZoneGraph& graph_;
+  const ZoneGraph* graph_;
   std::span<const ZoneNeed> needs_;
   const TruthTrack* truth_;
   std::int64_t period_ns_;
   ResidencyLimits limits_;
   EventSink& log_;
 
-  std::vector<Held> held_;  // by ZoneId
+  std::vector<Held> held_;                // by ZoneId
+  std::vector<std::string> drawn_names_;  // of the first map; empty until another is in use
+  std::vector<ZoneId> drawn_;             // zones of the first map, by ZoneId of the one in use
   NeedSum charged_;
   std::int64_t start_ns_ = 0;
   std::int64_t now_ns_ = 0;
@@ -76,6 +85,7 @@ class RunRecorder final : public EventSink {
   bool absent_ = false;
   std::uint64_t absent_cycles_ = 0, blocked_cycles_ = 0, wrong_cycles_ = 0, violations_ = 0;
   NeedSum peak_;
+  ByteCount peak_bytes_ = 0;
   ResidencyCounters counters_;
   std::vector<float> errors_m_;
   RunTrace trace_;

@@ -3,7 +3,9 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
+#include "runtime/replay/map_model.hpp"
 #include "runtime/replay/modelled_loader.hpp"
 #include "runtime/zone_loader.hpp"
 
@@ -26,7 +28,10 @@ class TimedLoader final : public ZoneLoader {
   }
   void cancel() noexcept override { cancelled_ = true; }
   void take_back(SlotChain) noexcept override {}
-  void use(const Catalog&) noexcept override {}
+  void use(const Catalog& catalog) noexcept override {
+    of_catalog_ = work_of(catalog);
+    work_ = of_catalog_;
+  }
   std::optional<LoadResult> poll() noexcept override {
     if (!under_way_ || (!cancelled_ && now_ns_ < done_ns_)) return std::nullopt;
     const LoadRequest done = *under_way_;
@@ -40,6 +45,7 @@ class TimedLoader final : public ZoneLoader {
 
  private:
   std::span<const LoadWork> work_;
+  std::vector<LoadWork> of_catalog_;
   LoadRates rates_;
   std::optional<LoadRequest> under_way_;
   std::int64_t now_ns_ = 0;

@@ -66,7 +66,8 @@ Message answer_zones(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
        ++zone) {
     rows.push_back(zone_row(builder, map, zone));
   }
-  return to.reply(id, wire::CreateZones(builder, first, total, builder.CreateVector(rows)));
+  return to.reply(id,
+                  wire::CreateZones(builder, first, total, builder.CreateVector(rows), map.epoch));
 }
 
 Message answer_zone(MessageBuilder& to, std::uint64_t id, const ServedMap& map, ZoneId zone) {

@@ -25,6 +25,7 @@ struct ServerCounters {
   std::uint64_t malformed = 0;        // messages that were none
   std::uint64_t events_undelivered = 0;
   std::uint64_t not_keeping_up = 0;  // events of that kind
+  std::uint64_t map_changes = 0, map_refusals = 0;
   std::uint32_t clients = 0, leases = 0;
   std::int64_t uptime_ns = 0;
 };

@@ -21,6 +21,7 @@ CommandDesk::CommandDesk(SpscQueue<Command>& commands, SpscQueue<CommandReply>& 
 
 bool CommandDesk::hand_over(Command& command) noexcept {
   command.id = last_id_ + 1;
+  command.map = map_;
   if (!commands_.push(command)) return false;
   ++last_id_;
   return true;
@@ -57,6 +58,7 @@ void CommandDesk::settle(std::int64_t monotonic_ns, std::int64_t run_ns, std::in
                          const std::function<void(const Settled&)>& tell) {
   CommandReply reply;
   while (replies_.pop(reply)) {
+    if (reply.map != 0 && reply.map != map_) continue;  // of a map that is gone, like its leases
     const auto found = std::ranges::find(pending_, reply.id, &Pending::command_id);
     if (found == pending_.end()) {
       if (reply.lease.zone != kNoZone) release_later(reply.lease);  // given up before it came

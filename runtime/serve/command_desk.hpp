@@ -36,8 +36,11 @@ class CommandDesk {
 
   CommandDesk(SpscQueue<Command>& commands, SpscQueue<CommandReply>& replies);
 
-  // The table of the map in use, told of pins and leases.
-  void use(ZoneTable& zones) noexcept { zones_ = &zones; }
+  // The table of the map in use, told of pins and leases, and the map's number.
+  void use(ZoneTable& zones, std::uint32_t map) noexcept {
+    zones_ = &zones;
+    map_ = map;
+  }
 
   // kBusy: too much is under way; kTooLarge: too many leases; kNotFound: a release of what is not
   // this client's.
@@ -78,6 +81,7 @@ class CommandDesk {
   SpscQueue<Command>& commands_;
   SpscQueue<CommandReply>& replies_;
   ZoneTable* zones_ = nullptr;
+  std::uint32_t map_ = 0;
   std::vector<Pending> pending_;
   std::vector<Held> held_;
   std::vector<Lease> to_release_;

@@ -74,7 +74,7 @@ void RequestHandler::greet(const Call& call) {
   const auto welcome = wire::CreateWelcome(
       builder, kProtocolVersion, program, lineage, version, call.map.serial,
       static_cast<std::uint32_t>(catalog.zones.size()), signatures, kind_list,
-      call.from.looking_only, kMostMessageBytes, requests_per_s_, ports_.lease_ns);
+      call.from.looking_only, kMostMessageBytes, requests_per_s_, ports_.lease_ns, call.map.epoch);
   call.from.greeted = true;
   call.from.answer(message.reply(call.id(), welcome), descriptors);
 }

@@ -72,7 +72,7 @@ class RequestHandler {
   CommandDesk desk_;
   std::uint64_t dump_request_ = 0;
   CommandDesk::ClientKey dump_client_ = 0;
-  SlowJob dump_;
+  SlowJob dump_{"zoned-dump"};
 };
 
 }  // namespace zonepack

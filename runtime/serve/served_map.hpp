@@ -19,6 +19,7 @@ struct ServedMap {
   const Catalog& catalog;
   const ZoneGraph& graph;
   std::uint32_t serial = 1;  // one more with every change of map; never 0
+  std::uint32_t epoch = 0;   // of the shared memory while it is in use; 0: there is none
   ZoneTable zones;
   std::optional<NodeStore> nodes;  // nothing when the manifest cannot be read any more
 

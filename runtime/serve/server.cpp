@@ -31,9 +31,10 @@ std::string listen_fault(const std::string& path, const Error& error) {
 }
 
 std::unique_ptr<ServedMap> served_map(const Catalog& catalog, const ZoneGraph& graph,
-                                      std::uint32_t serial, std::span<const ZoneId> pinned) {
-  auto map = std::make_unique<ServedMap>(
-      ServedMap{catalog, graph, serial, ZoneTable(catalog.zones.size(), pinned), std::nullopt});
+                                      std::uint32_t serial, std::uint32_t epoch,
+                                      std::span<const ZoneId> pinned) {
+  auto map = std::make_unique<ServedMap>(ServedMap{
+      catalog, graph, serial, epoch, ZoneTable(catalog.zones.size(), pinned), std::nullopt});
   if (Result<NodeStore> nodes = NodeStore::open(catalog); nodes) {
     map->nodes.emplace(std::move(nodes).value());
   }
@@ -69,8 +70,8 @@ std::unique_ptr<Server> Server::open(const ServeSettings& settings, const Server
     return nullptr;
   }
   std::unique_ptr<Server> server(new Server(settings, ports, std::move(poller).value()));
-  server->map_ = served_map(catalog, graph, 1, pinned);
-  server->handler_.desk().use(server->map_->zones);
+  server->map_ = served_map(catalog, graph, 1, ports.map_epoch, pinned);
+  server->handler_.desk().use(server->map_->zones, server->map_->serial);
   if (!server->add_listener(settings.socket, settings.mode, false, fault) ||
       !server->add_listener(settings.looking_socket, settings.looking_mode, true, fault)) {
     return nullptr;
@@ -99,16 +100,22 @@ bool Server::add_listener(const std::string& path, const std::string& mode, bool
   return added.ok();
 }
 
-void Server::offer_map(const Catalog& catalog, const ZoneGraph& graph,
+void Server::offer_map(std::uint32_t serial, const Catalog& catalog, const ZoneGraph& graph,
                        std::span<const ZoneId> pinned) {
-  offered_ = served_map(catalog, graph, map_->serial + 1, pinned);
+  offered_ = served_map(catalog, graph, serial, map_->epoch == 0 ? 0 : map_->epoch + 1, pinned);
+}
+
+void Server::forget_map(std::uint32_t serial) {
+  if (map_->serial == serial) change_map();
+  if (offered_ && offered_->serial == serial) offered_.reset();
 }
 
 void Server::change_map() {
   if (!offered_) return;
   handler_.desk().map_changed();
   map_ = std::move(offered_);
-  handler_.desk().use(map_->zones);
+  handler_.desk().use(map_->zones, map_->serial);
+  ++counters_.map_changes;
   MessageBuilder message;
   const auto notice = message.reply(
       0, wire::CreateMapChanged(message.builder(), map_->serial,
@@ -162,11 +169,19 @@ void Server::take_events() {
   const std::uint64_t lost = lost_events(ports_.status.load());
   events_.clear();
   for (Event event; ports_.events.pop(event);) {
+    const bool changed = event.kind == EventKind::kMapChanged;
+    if (event.map != map_->serial && !changed) {
+      tell_subscribers();
+      if (offered_ && offered_->serial == event.map) change_map();  // map_changed was lost
+      if (event.map != map_->serial) continue;
+    }
     map_->zones.take(event);
     counters_.not_keeping_up += event.kind == EventKind::kNotKeepingUp ? 1 : 0;
     events_.push_back(event);
-    const bool changed = event.kind == EventKind::kMapChanged;
-    if (event.kind == EventKind::kMapRefused) offered_.reset();
+    if (event.kind == EventKind::kMapRefused) {
+      offered_.reset();
+      ++counters_.map_refusals;
+    }
     if (!changed && events_.size() < kMostEventsAtOnce) continue;
     tell_subscribers();
     if (changed) change_map();

@@ -49,13 +49,15 @@ class Server {
   void run();
   void stop() noexcept;
 
-  // A map that the run was offered too. It takes the place of the one in use when the event
-  // map_changed comes, and is forgotten at map_refused. Clients are told; leases are over. Which
-  // map is served, map() tells: the other one is not referred to any more.
-  void offer_map(const Catalog& catalog, const ZoneGraph& graph, std::span<const ZoneId> pinned);
+  // A map that the run is going to be offered, and its number there. It takes the place of the one
+  // in use with the first event that is of it, and is forgotten at map_refused. Clients are told;
+  // leases are over. Which map is served, map() tells.
+  void offer_map(std::uint32_t serial, const Catalog& catalog, const ZoneGraph& graph,
+                 std::span<const ZoneId> pinned);
 
-  // The same at once: for an event that was lost.
-  void change_map();
+  // The run does not use this map any more, all its events were taken: nor does the server from
+  // here on, even if the event that told so was lost.
+  void forget_map(std::uint32_t serial);
 
   // A command of the daemon itself, through the queue that is the server's. False: no room now.
   bool post(const Command& command);
@@ -80,6 +82,7 @@ class Server {
                     std::string& fault);
   void tell_subscribers();
   void take_events();
+  void change_map();
   void settle();
   void accept(std::size_t listener);
   void pause_or_resume(Listener& listener, std::size_t token);

@@ -29,6 +29,8 @@ struct ServerPorts {
   int memory_fd = -1;  // open for reading only
   int lock_fd = -1;    // a share of the memory's lock
 
+  std::uint32_t map_epoch = 0;  // of the memory, with the first map; one more with every change
+
   std::int64_t lease_ns = 0;  // as Residency ends leases
 
   // Asked when events were lost: what can be read now. Any thread.

@@ -9,7 +9,7 @@ Result<void> SlowJob::start(Work work) {
   if (running()) return ErrorCode::kBusy;
   done_.store(false, std::memory_order_relaxed);
   ThreadSettings settings;
-  settings.name = "zoned-dump";
+  settings.name = name_;
   settings.stack_bytes = 128 * 1024;
   Result<Thread> thread = Thread::start(settings, true, [this, work = std::move(work)] {
     result_ = work();

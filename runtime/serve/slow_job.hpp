@@ -16,6 +16,9 @@ class SlowJob {
  public:
   using Work = std::function<Result<std::uint64_t>()>;
 
+  // name: of the thread, at most 15 characters; outlives this object.
+  explicit SlowJob(const char* name) : name_(name) {}
+
   // kBusy while another runs; kIo when there is no thread to be had.
   Result<void> start(Work work);
 
@@ -25,6 +28,7 @@ class SlowJob {
   bool running() const noexcept { return thread_.joinable(); }
 
  private:
+  const char* name_;
   std::optional<Result<std::uint64_t>> result_;
   std::atomic<bool> done_{false};
   Thread thread_;

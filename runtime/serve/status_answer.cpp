@@ -91,6 +91,9 @@ void add_server(wire::StatusBuilder& to, const ServedMap& map, const ServerCount
   to.add_throttled_total(counters.throttled);
   to.add_malformed_total(counters.malformed);
   to.add_events_undelivered_total(counters.events_undelivered);
+  to.add_map_serial(map.serial);
+  to.add_map_changes_total(counters.map_changes);
+  to.add_map_refusals_total(counters.map_refusals);
 }
 
 }  // namespace
@@ -99,15 +102,18 @@ Message answer_status(MessageBuilder& to, std::uint64_t id, const ServedMap& map
                       const LiveStatus& status, const ServerCounters& counters) {
   flatbuffers::FlatBufferBuilder& builder = to.builder();
   const auto pose = pose_report(builder, status);
-  const bool somewhere = status.state.zone < map.catalog.zones.size();
+  const bool somewhere =
+      status.state.map == map.serial && status.state.zone < map.catalog.zones.size();
   const auto zone =
       builder.CreateString(somewhere ? map.catalog.zones[status.state.zone].name : std::string());
+  const auto version = builder.CreateVector(map.catalog.version.data(), map.catalog.version.size());
   const auto step = builder.CreateString(to_string(status.worst.step));
   const wire::Timing wakeup = timing(status.wakeup), cycle = timing(status.cycle);
   wire::StatusBuilder body(builder);
   body.add_pose(pose);
   body.add_zone(zone);
   body.add_worst_step(step);
+  body.add_map_version(version);
   body.add_wakeup(&wakeup);
   body.add_cycle(&cycle);
   add_run(body, status);

@@ -19,12 +19,12 @@ constexpr double kLessSure = 2;
 }  // namespace
 
 StateSaver::StateSaver(StateStore& store, SavedState like, std::function<StateGlimpse()> look,
-                       std::function<std::string(ZoneId)> name_of,
+                       std::function<bool(const StateGlimpse&, SavedState&)> place,
                        std::function<void(std::string)> tell)
     : store_(store),
       state_(std::move(like)),
       look_(std::move(look)),
-      name_of_(std::move(name_of)),
+      place_(std::move(place)),
       tell_(std::move(tell)) {}
 
 Result<void> StateSaver::start() {
@@ -53,19 +53,22 @@ void StateSaver::stop() {
 void StateSaver::watch() {
   const StateGlimpse glimpse = look_();
   if (!glimpse.pose.valid) return;
-  if (tried_ && glimpse.zone == zone_ && glimpse.now_ns - last_ns_ < kPeriod_ns) return;
+  if (tried_ && glimpse.map == map_ && glimpse.zone == zone_ &&
+      glimpse.now_ns - last_ns_ < kPeriod_ns)
+    return;
   save(glimpse);
 }
 
 void StateSaver::save(const StateGlimpse& glimpse) {
+  if (!place_(glimpse, state_)) return;  // a newer glimpse will be there
   tried_ = true;
+  map_ = glimpse.map;
   zone_ = glimpse.zone;
   last_ns_ = glimpse.now_ns;
   state_.realtime_ns = realtime_ns();
   state_.T_map_base = glimpse.pose.T_map_base;
   state_.covariance = glimpse.pose.covariance;
   state_.trusted = glimpse.pose.trusted;
-  state_.zone = glimpse.zone == kNoZone ? std::string() : name_of_(glimpse.zone);
   const auto done = store_.save(state_);
   if (done) {
     ++saved_;

@@ -16,6 +16,7 @@ namespace zonepack {
 struct StateGlimpse {
   std::int64_t now_ns = 0;  // the run's clock
   PoseEstimate pose;
+  std::uint32_t map = 1;  // number in the run of the map that the zone is of
   ZoneId zone = kNoZone;
 };
 
@@ -29,10 +30,12 @@ class StateSaver {
  public:
   static constexpr std::int64_t kPeriod_ns = 60'000'000'000;
 
-  // look: the newest glimpse. name_of: of a zone. tell: takes complete messages. All must outlive
-  // this object. `like` gives the map and the number of runs.
+  // look: the newest glimpse. place: fills the map's version and the name of the zone; false when
+  // that map is gone. tell: takes complete messages. All must outlive
+  // this object. `like` gives the map's lineage and the number of runs.
   StateSaver(StateStore& store, SavedState like, std::function<StateGlimpse()> look,
-             std::function<std::string(ZoneId)> name_of, std::function<void(std::string)> tell);
+             std::function<bool(const StateGlimpse&, SavedState&)> place,
+             std::function<void(std::string)> tell);
   ~StateSaver() { end_thread(); }
 
   Result<void> start();
@@ -53,9 +56,10 @@ class StateSaver {
   StateStore& store_;
   SavedState state_;
   std::function<StateGlimpse()> look_;
-  std::function<std::string(ZoneId)> name_of_;
+  std::function<bool(const StateGlimpse&, SavedState&)> place_;
   std::function<void(std::string)> tell_;
-  ZoneId zone_ = kNoZone;  // as saved, or tried to
+  std::uint32_t map_ = 1;  // as saved, or tried to
+  ZoneId zone_ = kNoZone;
   std::int64_t last_ns_ = 0;
   bool tried_ = false;
   bool failing_ = false;

@@ -7,6 +7,12 @@ if(TARGET zonepack AND TARGET zoned)
   add_test(NAME system/run
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/run_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
+  if(TARGET zonectl)
+    add_test(NAME system/map_change
+             COMMAND ${CMAKE_CURRENT_LIST_DIR}/map_change_test.sh
+                     ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+    set_tests_properties(system/map_change PROPERTIES TIMEOUT 600)
+  endif()
   add_test(NAME system/recording
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/recording_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})

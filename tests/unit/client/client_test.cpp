@@ -10,13 +10,27 @@
 #include <optional>
 #include <thread>
 
+#include "packer/encode/pack_writer.hpp"
 #include "runtime/pack_format/pack_reader.hpp"
 #include "tests/support/shared_zones.hpp"
+#include "tests/support/signature_recipe.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/client/fake_zoned.hpp"
 
 namespace zonepack {
 namespace {
+
+// A zone's worth of chunks.
+DecodedPack some_zone() {
+  const test_support::TemporaryFolder folder;
+  packer::PackWriter writer(folder.path(), "zone");
+  test_support::SignatureRecipe recipe;
+  recipe.id = 1;
+  packer::SignatureRecord record = test_support::make_signature(recipe);
+  writer.add(record, 0, 0);
+  const auto reader = PackReader::open(folder / writer.finish(kEveryPayload).file);
+  return DecodedPack::decode(*reader, kEveryPayload).value();
+}
 
 class Connected : public testing::Test {
  protected:
@@ -48,6 +62,26 @@ TEST_F(Connected, LooksUpNamesAgainWhenTheMapChanged) {
   EXPECT_EQ(client.lease(1).error().code, ErrorCode::kMismatch);
   EXPECT_EQ(client.find_zone("lobby").value(), 0u);
   EXPECT_TRUE(client.lease(0).ok());
+}
+
+TEST_F(Connected, ReadsNothingByANumberOfTheMapBefore) {
+  zoned->epoch = zones.map().epoch();
+  ASSERT_TRUE(client.zones());  // zoned was of a version that did not tell until now
+  const DecodedPack pack = some_zone();
+  zones.put(1, pack.chunks());
+  int reads = 0;
+  const auto read = [&] { return client.read(1, [&](const ZoneSignatures&) { ++reads; }); };
+  EXPECT_EQ(read(), ReadStatus::kOk);
+  zones.remove(1);
+  ASSERT_TRUE(zones.map().begin_map(2));
+  zones.put(1, pack.chunks());
+  EXPECT_EQ(read(), ReadStatus::kAbsent);  // the number may be another zone's now
+  ASSERT_TRUE(client.zones());
+  EXPECT_EQ(read(), ReadStatus::kAbsent);  // the server has not seen the change yet
+  ++zoned->epoch;
+  ASSERT_TRUE(client.zones());
+  EXPECT_EQ(read(), ReadStatus::kOk);
+  EXPECT_EQ(reads, 2);
 }
 
 TEST_F(Connected, TakesAndReleasesLeases) {

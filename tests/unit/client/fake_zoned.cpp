@@ -72,6 +72,7 @@ void FakeZoned::answer(const LocalSocket& client, const wire::Request& request) 
       welcome.add_program(program);
       welcome.add_map_serial(serial_);
       welcome.add_zones(2);
+      welcome.add_map_epoch(epoch);
       welcome.add_descriptors(descriptors);
       const std::array files{file->get()};
       return send(message.reply(id, welcome.Finish()), files);
@@ -85,7 +86,7 @@ void FakeZoned::answer(const LocalSocket& client, const wire::Request& request) 
       zone.add_signatures(5);
       const std::array zones{zone.Finish()};
       const auto list = builder.CreateVector(zones.data(), zones.size());
-      return send(message.reply(id, wire::CreateZones(builder, first, 2, list)));
+      return send(message.reply(id, wire::CreateZones(builder, first, 2, list, epoch)));
     }
     case wire::RequestBody::TakeLease: {
       const wire::Lease lease(request.body_as_TakeLease()->zone(), 7, 3);

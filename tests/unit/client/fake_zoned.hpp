@@ -22,7 +22,8 @@ class FakeZoned {
   void change_map(std::uint32_t serial, std::vector<std::string> names);
   std::atomic<wire::Fault> fault{wire::Fault::None};  // the answer to everything from now on
   std::atomic<int> answers_after_ms{0};
-  std::atomic<std::int64_t> pose_stamp_ns{0};         // of the last pose in
+  std::atomic<std::uint32_t> epoch{0};         // of the memory while its map is in use
+  std::atomic<std::int64_t> pose_stamp_ns{0};  // of the last pose in
   std::atomic<std::uint32_t> released{0};
 
  private:

@@ -153,6 +153,32 @@ TEST_F(MapChange, KeepsTheOldMapWhenBothDoNotFit) {
   EXPECT_TRUE(old_world.memory.resident(0));
 }
 
+TEST_F(MapChange, KeepsTheOldMapWhenThereAreNotEnoughSlotsHoweverLargeTheBudget) {
+  World roomy{loader, *this, *this, 10'000};
+  MapInUse in_use{roomy.catalog, roomy.graph, roomy.needs, roomy.memory, roomy.cycle, 2, 7};
+  stand_in_a();
+  maps.offer(in_use);  // 4 of the old one and 4 of the new one
+  stand(5);
+  EXPECT_TRUE(told("map_refused no room"));
+  EXPECT_TRUE(old_world.memory.resident(0));
+}
+
+TEST_F(MapChange, KeepsTheOldMapWhenTheNewOneHasNoRoomForTheOldTables) {
+  World small{loader, *this, *this, 100 + 400};
+  MapInUse in_use{small.catalog, small.graph, small.needs, small.memory, small.cycle, 2};
+  stand_in_a();
+  maps.offer(in_use);
+  stand(5);
+  EXPECT_TRUE(told("map_refused no room"));
+}
+
+TEST_F(MapChange, TellsWhyAMapThatWasToBeOfferedCannotBeUsed) {
+  stand_in_a();
+  maps.run({now_ns += 10'000'000, {}, {}, {}, {}, {0, ErrorCode::kTruncated}});
+  EXPECT_TRUE(told("map_offered") && told("map_refused truncated"));
+  EXPECT_FALSE(maps.changing());
+}
+
 TEST_F(MapChange, IsRefusedWhileNothingMayBeEvicted) {
   stand_in_a();
   Command freeze;

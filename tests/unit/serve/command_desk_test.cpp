@@ -19,7 +19,7 @@ class Desk : public testing::Test {
   CommandDesk desk{commands, replies};
   std::vector<CommandDesk::Settled> told;
 
-  void SetUp() override { desk.use(zones); }
+  void SetUp() override { desk.use(zones, 0); }
 
   static Command command_of(Command::Kind kind, ZoneId zone = 0) {
     Command command;
@@ -140,6 +140,25 @@ TEST_F(Desk, AClientReleasesOnlyItsOwn) {
   EXPECT_EQ(desk.post(2, 20, release, 0).error().code, ErrorCode::kNotFound);
   EXPECT_TRUE(desk.post(1, 11, release, 0).ok());
   EXPECT_EQ(desk.leases(), 0u);
+}
+
+TEST_F(Desk, SaysWhichMapsZonesACommandIsOnAndHeedsNoReplyOfAnother) {
+  desk.use(zones, 4);
+  ASSERT_TRUE(desk.post(1, 10, command_of(Command::Kind::kLease), 0).ok());
+  Command asked;
+  ASSERT_TRUE(commands.pop(asked));
+  EXPECT_EQ(asked.map, 4u);
+  desk.map_changed();
+  desk.use(zones, 5);
+  CommandReply late;
+  late.id = asked.id;
+  late.map = 4;
+  late.lease = {0, 9, 1};
+  replies.push(late);
+  settle();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].reply.error.code, ErrorCode::kBusy);
+  EXPECT_EQ(commands.size(), 0u) << "a release would be of another map's zone";
 }
 
 }  // namespace

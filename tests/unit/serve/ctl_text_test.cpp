@@ -39,7 +39,7 @@ class CtlText : public testing::Test {
   }
 
   const wire::Status& status() {
-    const ServedMap map{run.catalog, run.graph, 1, ZoneTable(3), std::nullopt};
+    const ServedMap map{run.catalog, run.graph, 1, 0, ZoneTable(3), std::nullopt};
     message.builder().Clear();
     const Message bytes = answer_status(message, 1, map, live, counters);
     return *flatbuffers::GetRoot<wire::Reply>(bytes.data())->body_as_Status();

@@ -44,6 +44,7 @@ struct FakeRun {
   ServerPorts ports{status, events, commands, replies, poses};
   ServeSettings settings;
   std::unique_ptr<Server> server;
+  std::uint32_t map = 1;  // that events are of
 
   FakeRun() {
     settings.socket = folder / "s";
@@ -60,6 +61,7 @@ struct FakeRun {
   void happen(EventKind kind, ZoneId zone, std::uint32_t generation = 1) {
     Event event;
     event.kind = kind;
+    event.map = map;
     event.zone = zone;
     event.generation = generation;
     events.push(event);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "platform/clock.hpp"
@@ -46,9 +47,13 @@ class Inputs final : public InputSink {
     frames[cycle] = input.frames.size();
     corrections[cycle] = input.corrections.size();
     commands[cycle] = input.commands.size();
+    offers[cycle] = input.offer;
     offset_ns = offset;
   }
   std::array<std::size_t, 64> frames{}, corrections{}, commands{};
+  std::uint64_t lost() const noexcept override { return 3; }
+
+  std::array<MapOffer, 64> offers{};
   std::int64_t offset_ns = 0;
 };
 
@@ -71,6 +76,7 @@ class Loop : public testing::Test {
                                 .replies = &replies,
                                 .recorder = &inputs,
                                 .status = status});
+    before_run(loop);
     loop.run();
     cycles = loop.cycles();
   }
@@ -90,11 +96,16 @@ class Loop : public testing::Test {
   Catalog catalog;
   MapInUse in_use{catalog, graph, needs, memory, cycle};
   MapRun maps{in_use, loader, nullptr};
+  Residency other_memory{3, {800, 0, 100, 0, {8, 20}, 1'000'000'000}};
+  Cycle other_cycle{testing_support::sample_robot(),
+                    {graph, needs, load_s, {}, other_memory, loader, notes, nullptr, 2}};
+  MapInUse other_in_use{catalog, graph, needs, other_memory, other_cycle, 2};
   SpscQueue<PoseCorrection> logged{8}, poses{64};
   SpscQueue<Command> commands{64};
   SpscQueue<CommandReply> replies{8};
   Seqlock<LiveStatus> status;
   Inputs inputs;
+  std::function<void(ControlLoop&)> before_run = [](ControlLoop&) {};
   std::uint64_t cycles = 0;
 };
 
@@ -147,6 +158,43 @@ TEST_F(Loop, TakesAtMostSixteenCommandsACycleAndAnswersEachOnceWhileThereIsRoom)
     EXPECT_EQ(reply.id, id);
     EXPECT_EQ(reply.error.code, ErrorCode::kNotFound);
   }
+}
+
+TEST_F(Loop, TellsWhoRecordsWhyAMapCannotBeUsedAndTakesWhatItCouldNotKeep) {
+  before_run = [&](ControlLoop& loop) { loop.offer_refused(ErrorCode::kTruncated); };
+  run();
+  EXPECT_EQ(inputs.offers[0].fault, ErrorCode::kTruncated);
+  EXPECT_EQ(inputs.offers[1].fault, ErrorCode::kOk);
+  EXPECT_EQ(overload.lost_recordings, 3u);
+}
+
+TEST_F(Loop, TellsWhoRecordsOfAMapOnOfferAndChangesToIt) {
+  before_run = [&](ControlLoop& loop) {
+    ASSERT_TRUE(loop.offer(other_in_use));
+    EXPECT_FALSE(loop.offer(other_in_use));
+    loop.map_freed();
+  };
+  run();
+  EXPECT_EQ(inputs.offers[0].map, 2u);
+  EXPECT_EQ(inputs.commands[0], 1u);  // that the map is freed: nobody waits for a reply
+  EXPECT_EQ(replies.size(), 0u);
+  EXPECT_EQ(maps.map().number, 2u);  // no pose is known, so nothing had to be loaded
+  EXPECT_EQ(status.load().state.map, 2u);
+}
+
+TEST_F(Loop, DropsCommandsOnZonesOfAnotherMap) {
+  Command command;
+  command.kind = Command::Kind::kPin;
+  command.map = 2;
+  commands.push(command);
+  command.map = 1;
+  commands.push(command);
+  run();
+  EXPECT_EQ(inputs.commands[0], 1u);
+  CommandReply reply;
+  ASSERT_TRUE(replies.pop(reply));
+  EXPECT_EQ(reply.map, 1u);
+  EXPECT_FALSE(replies.pop(reply));
 }
 
 TEST_F(Loop, LosesWhatAFullQueueCannotTakeAndCountsIt) {

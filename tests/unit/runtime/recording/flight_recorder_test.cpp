@@ -34,6 +34,7 @@ class FlightRecorderTest : public testing::Test {
     if (flight.wants_segment()) {
       Checkpoint checkpoint;
       checkpoint.cycle = cycle;
+      checkpoint.map = map;
       flight.begin_segment(checkpoint, false);
     }
     CycleBlockWriter block(10);
@@ -56,7 +57,42 @@ class FlightRecorderTest : public testing::Test {
   test_support::TemporaryFolder folder;
   testing_support::RecordedDrive drive;
   std::string fault, note;
+  std::uint32_t map = 1;  // in use
 };
+
+TEST_F(FlightRecorderTest, KeepsAMapForAsLongAsACycleNeedsIt) {
+  auto flight =
+      FlightRecorder::open(path("flight"), true, FlightRecorder::kLeastBytes, drive.preface());
+  ASSERT_TRUE(flight.ok());
+  std::uint64_t cycle = 0;
+  const auto pass = [&](int cycles) {
+    while (cycles-- > 0) append(**flight, cycle++);
+  };
+  const auto offer = [&](std::uint32_t number) {
+    pass(1);
+    (*flight)->add_map(number, write_map({number, "maps", {std::byte{1}}}), cycle);
+    pass(1);
+  };
+  const auto has = [&](std::uint32_t number) {
+    EXPECT_TRUE((*flight)->dump(path("dump.zpr")));
+    for (const std::string& recording : {path("dump.zpr"), path("flight")}) {
+      const auto reader = RecordingReader::open(recording, fault);
+      EXPECT_TRUE(reader) << fault;
+      if (!reader || reader->map(number) == nullptr) return false;
+    }
+    return true;
+  };
+  offer(2);  // refused, say
+  offer(3);
+  map = 3;  // in use from here on
+  EXPECT_TRUE(has(2) && has(3));
+  pass(100);  // all segments begin behind both offers
+  EXPECT_FALSE(has(2));
+  EXPECT_TRUE(has(3));
+  map = 1;
+  pass(100);
+  EXPECT_FALSE(has(3));
+}
 
 TEST_F(FlightRecorderTest, DumpsAWholeRunThatReplaysToTheSameEvents) {
   for (const bool named : {true, false}) {

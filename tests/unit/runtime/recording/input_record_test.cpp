@@ -182,5 +182,22 @@ TEST(ByteRing, KeepsMessagesWholeAndInOrderAcrossItsEndAndRefusesWhatDoesNotFit)
   EXPECT_FALSE(ring.push(std::vector<std::byte>(125), {}));  // 4 more for its length
 }
 
+TEST(InputRecord, CarriesTheMapOnOfferOrWhyThereIsNone) {
+  for (const MapOffer offer : {MapOffer{7, ErrorCode::kOk}, MapOffer{0, ErrorCode::kTruncated}}) {
+    CycleInput input;
+    input.offer = offer;
+    std::vector<std::byte> bytes(64);
+    ByteWriter out(bytes);
+    write_records(input, out);
+    RecordedInput back;
+    back.offer.map = 99;
+    ASSERT_TRUE(read_records(out.written(), back));
+    EXPECT_EQ(back.offer.map, offer.map);
+    EXPECT_EQ(back.offer.fault, offer.fault);
+    EXPECT_EQ(read_records(out.written().first(out.size() - 1), back).error().code,
+              ErrorCode::kBadStructure);
+  }
+}
+
 }  // namespace
 }  // namespace zonepack

@@ -122,11 +122,30 @@ class StateSaverTest : public testing::Test {
   test_support::TemporaryFolder folder;
   StateStore store{(folder / "state").string()};
   StateGlimpse glimpse;
+  std::uint32_t gone = 0;  // a map
   std::vector<std::string> told;
   StateSaver saver{store, somewhere(), [this] { return glimpse; },
-                   [](ZoneId zone) { return "Z" + std::to_string(zone); },
+                   [this](const StateGlimpse& now, SavedState& state) {
+                     if (now.map == gone) return false;
+                     state.map_version[0] = static_cast<std::uint8_t>(now.map);
+                     state.zone = "Z" + std::to_string(now.zone);
+                     return true;
+                   },
                    [this](std::string text) { told.push_back(std::move(text)); }};
 };
+
+TEST_F(StateSaverTest, SavesTheMapThatTheZoneIsOfAndWaitsWhereThatIsGone) {
+  glimpse.pose.valid = true;
+  pass(1);
+  EXPECT_EQ(saved()->map_version[0], 1);
+  gone = glimpse.map = 2;
+  pass(1);
+  EXPECT_EQ(saver.saved(), 1u);
+  gone = 1;
+  pass(1);
+  EXPECT_EQ(saved()->map_version[0], 2);
+  EXPECT_EQ(saver.saved(), 2u);
+}
 
 TEST_F(StateSaverTest, SavesOnAChangeOfZoneAtTheEndAndElseOnceAMinute) {
   glimpse.pose.valid = false;
