@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "platform/base/require.hpp"
+#include "platform/can_errors.hpp"
 #include "runtime/odometry/se2.hpp"
 
 namespace zonepack {
@@ -57,9 +58,13 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
   ++state_.cycles;
 
   const bool had_pose = state_.pose.valid;
+  std::uint32_t errors = 0;
   for (const CanFrame& frame : input.frames) {
+    if (frame.error) errors |= frame.id;
     if (const auto increment = odometry_.take(frame)) filter_.predict(*increment);
   }
+  if ((errors & kCanErrorBusOff) != 0) emit(EventKind::kBusOff);
+  if ((errors & kCanErrorRestarted) != 0) emit(EventKind::kBusRestarted);
   watch_odometry(now_ns);
   for (const PoseCorrection& fix : input.corrections) take(fix, now_ns);
   state_.pose = filter_.estimate(now_ns);

@@ -21,6 +21,10 @@ const char* to_string(EventKind kind) noexcept {
       return "odometry_stale";
     case EventKind::kOdometryResumed:
       return "odometry_resumed";
+    case EventKind::kBusOff:
+      return "bus_off";
+    case EventKind::kBusRestarted:
+      return "bus_restarted";
     case EventKind::kZoneEntered:
       return "zone_entered";
     case EventKind::kZoneWanted:

@@ -17,6 +17,8 @@ enum class EventKind : std::uint8_t {
   kCorrectionRejected,  // reason: the filter's verdict
   kOdometryStale,       // no sample for longer than the timeout
   kOdometryResumed,
+  kBusOff,        // the CAN controller left the bus for too many errors
+  kBusRestarted,  // and was started again
   kZoneEntered,    // the tracker's zone changed
   kZoneWanted,     // entered, approached, a hypothesis or pinned: to be resident
   kZoneUnwanted,   // no longer so

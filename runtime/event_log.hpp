@@ -23,17 +23,19 @@ std::string json_quoted(std::string_view text);
 //   cycle               from 0
 //   t_ns                since the start of the run
 //   event               start, pose_initialised, pose_trusted, pose_reinitialised,
-//                       correction_rejected, odometry_stale, odometry_resumed, zone_entered,
-//                       zone_wanted, zone_unwanted, load_started, load_done, load_cancelled,
-//                       load_given_up, load_failed, evicted, blocked, unblocked, not_keeping_up,
-//                       map_offered, map_changed, map_refused, end (event.hpp says what each means)
+//                       correction_rejected, odometry_stale, odometry_resumed, bus_off,
+//                       bus_restarted, zone_entered, zone_wanted, zone_unwanted, load_started,
+//                       load_done, load_cancelled, load_given_up, load_failed, evicted, blocked,
+//                       unblocked, not_keeping_up, map_offered, map_changed, map_refused, docked,
+//                       undocked, hold_begun, hold_ended, zone_confirmed, marker_ignored, end
+//                       (event.hpp says what each means)
 //   zone                its name                               where a zone is meant
 //   signatures          of the zone                            where a zone is meant
 //   bytes               charged for the zone while it is held  where a zone is meant
 //   generation          counts the loads of the zone           where a zone is meant
 //   charged_signatures  of all zones, once the event has happened
 //   charged_bytes       everything, once the event has happened
-//   reason              a word      correction_rejected, load_failed, map_refused
+//   reason              a word      correction_rejected, load_failed, map_refused, marker_ignored
 //   x_mm, y_mm, yaw_mrad  base_link in the map  every event that is not about memory alone, where
 //                       a pose is known
 //

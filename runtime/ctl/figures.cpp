@@ -179,6 +179,16 @@ std::vector<Figure> figures_of(const wire::Status& s) {
        n(s.zone_switches())},
       {"can_frames", "zoned_can_frames_total", kCounter, "CAN frames taken.",
        n(s.can_frames_total())},
+      {"can_up", "zoned_can_up", kFlag, "The CAN interface is up, its controller on the bus.",
+       flag(s.can_up())},
+      {"can_error_frames", "zoned_can_error_frames_total", kCounter,
+       "Troubles that the CAN controller told of.", n(s.can_error_frames_total())},
+      {"bus_offs", "zoned_bus_offs_total", kCounter, "Times the controller left the bus.",
+       n(s.bus_offs_total())},
+      {"bus_restarts", "zoned_bus_restarts_total", kCounter, "Times it was started again.",
+       n(s.bus_restarts_total())},
+      {"can_reopened", "zoned_can_reopened_total", kCounter,
+       "Times that the CAN interface vanished and came back.", n(s.can_reopened_total())},
       {"corrections_used", "zoned_corrections_used_total", kCounter, "Fixes that were believed.",
        n(s.fixes_used_total())},
       {"corrections_rejected", "zoned_corrections_rejected_total", kCounter,
@@ -303,6 +313,9 @@ std::vector<std::string> complaints(const wire::Status& s) {
   if (s.blocked()) {
     lines.push_back("BLOCKED: a wanted zone does not fit beside what must stay" +
                     std::string(s.frozen() ? "; zonectl unfreeze" : "; raise memory.budget"));
+  }
+  if (!s.can_up()) {
+    lines.push_back("NO CAN BUS: no odometry, the pose gets less sure; ip -details link show");
   }
   if (s.pose() == nullptr || !s.pose()->valid()) {
     lines.push_back("NO POSE: waiting for a fix, or for zonectl pose X Y YAW_DEG");

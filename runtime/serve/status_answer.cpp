@@ -35,6 +35,14 @@ void add_run(wire::StatusBuilder& to, const LiveStatus& status) {
   to.add_pose_reinitialised_total(status.filter.reinitialised);
 }
 
+void add_bus(wire::StatusBuilder& to, const CanBusStatus& bus) {
+  to.add_can_up(bus.link == CanLink::kUp && bus.state != CanBusState::kOff);
+  to.add_can_error_frames_total(bus.error_frames);
+  to.add_bus_offs_total(bus.bus_offs);
+  to.add_bus_restarts_total(bus.restarts);
+  to.add_can_reopened_total(bus.reconnects);
+}
+
 void add_memory(wire::StatusBuilder& to, const LiveStatus& status) {
   to.add_budget_bytes(status.budget);
   to.add_charged_bytes(status.charged);
@@ -135,6 +143,7 @@ Message answer_status(MessageBuilder& to, std::uint64_t id, const ServedMap& map
   body.add_lines(lines);
   body.add_map_ready_latency(&ready);
   add_run(body, status);
+  add_bus(body, status.bus);
   add_memory(body, status);
   add_overload(body, status.overload);
   add_thread(body, status);

@@ -8,6 +8,7 @@
 #   controllers-fd   the same with CAN FD (CTU CAN FD)
 #   disk             an ext4 file system of 64 MiB at /data, empty at the first boot
 #   CONSOLE=FILE in the environment: the console's text goes there too
+#   OUT=FOLDER in the environment: what lies in /data/out at the end goes there
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 . toolchains/cross/debian.sh
@@ -66,5 +67,10 @@ while
   kill $watcher 2>/dev/null
   power_cut
 do :; done
+if [ -n "${OUT:-}" ] && [ -e "$work/disk" ]; then
+  e2fsck -p "$work/disk" >/dev/null 2>&1 || true  # what was written last is in the journal
+  debugfs -R "rdump /out $work" "$work/disk" 2>/dev/null
+  if [ -d "$work/out" ]; then cp "$work"/out/* "$OUT/"; fi
+fi
 ((status != 124)) || { echo "the guest took more than ${TIMEOUT:-300} s" >&2; exit 124; }
 exit "$(tr -d '\r' <"$work/console" | sed -n 's/.*GUEST-EXIT:\([0-9]*\):.*/\1/p' | tail -1 | grep . || echo 125)"

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "platform/can_errors.hpp"
 #include "runtime/replay/modelled_loader.hpp"
 #include "tests/support/rooms.hpp"
 #include "tests/support/sample_catalog.hpp"
@@ -205,6 +206,21 @@ TEST_F(CycleTest, TellsWhenOdometryIsMissingAndWhenItIsBack) {
   EXPECT_THAT(words(), ElementsAre("odometry_stale"));
   step();
   EXPECT_THAT(words(), ElementsAre("odometry_stale", "odometry_resumed"));
+}
+
+TEST_F(CycleTest, TellsWhenTheControllerLeavesTheBusAndIsStartedAgain) {
+  trust(2, 2);
+  events.clear();
+  const auto take = [this](std::vector<CanFrame> frames) {
+    now_ns += kPeriod_ns;
+    cycle.run({now_ns, frames, {}, {}, {}});
+  };
+  // However many a broken bus sends, one cycle tells it once.
+  take({error_frame(kCanErrorBusOff), error_frame(kCanErrorBusOff)});
+  EXPECT_THAT(words(), ElementsAre("bus_off"));
+  take({error_frame(kCanErrorController, kCanControllerPassive)});
+  take({error_frame(kCanErrorRestarted)});
+  EXPECT_THAT(words(), ElementsAre("bus_off", "bus_restarted"));
 }
 
 TEST_F(CycleTest, RefusesAPinThatLeavesNoRoomForAPairAndAZoneThatDoesNotExist) {

@@ -53,6 +53,27 @@ class CtlText : public testing::Test {
   }
 };
 
+TEST_F(CtlText, TellsOfABusThatIsDownAndCountsItsTroubles) {
+  EXPECT_EQ(complaints(status()), std::vector<std::string>{});
+  live.bus = {.link = CanLink::kUp,
+              .state = CanBusState::kOff,
+              .error_frames = 7,
+              .bus_offs = 2,
+              .restarts = 1,
+              .reconnects = 3};
+  const auto json = nlohmann::json::parse(status_json(status()));
+  EXPECT_EQ(json["can_up"], false);
+  EXPECT_EQ(json["can_error_frames"], 7);
+  EXPECT_EQ(json["bus_offs"], 2);
+  EXPECT_EQ(json["bus_restarts"], 1);
+  EXPECT_EQ(json["can_reopened"], 3);
+  ASSERT_EQ(complaints(status()).size(), 1u);
+  EXPECT_EQ(complaints(status())[0].substr(0, 10), "NO CAN BUS");
+  live.bus.state = CanBusState::kActive;
+  live.bus.link = CanLink::kAbsent;
+  EXPECT_EQ(complaints(status()).size(), 1u);
+}
+
 // The rules that `promtool check metrics` holds text to.
 TEST_F(CtlText, MetricsAreAsPrometheusWantsThem) {
   const std::regex name("zoned_[a-z0-9_]+");
