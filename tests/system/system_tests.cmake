@@ -7,6 +7,9 @@ if(TARGET zonepack AND TARGET zoned)
   add_test(NAME system/run
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/run_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
+  add_test(NAME system/can_utils
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/can_utils_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
   add_test(NAME system/recording
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/recording_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
