@@ -73,6 +73,7 @@ class Loop : public testing::Test {
                                 .status = status});
     loop.run();
     cycles = loop.cycles();
+    woken = loop.wakeup().count();
   }
 
   const ZoneGraph graph = testing_support::three_rooms();
@@ -96,6 +97,7 @@ class Loop : public testing::Test {
   Seqlock<LiveStatus> status;
   Inputs inputs;
   std::uint64_t cycles = 0;
+  std::uint64_t woken = 0;
 };
 
 TEST_F(Loop, RunsUntilTheClockSaysThatItIsOverAndTellsHowItStands) {
@@ -171,6 +173,14 @@ TEST_F(Loop, RunsEveryCycleOfALogHoweverLate) {
   EXPECT_EQ(cycles, 20u);
   EXPECT_GE(overload.missed_deadlines, 1u);
   EXPECT_EQ(overload.skipped_periods, 0u);
+}
+
+TEST_F(Loop, CountsAsWokenOnlyWhatSleptForItsDeadline) {
+  clock.late_cycle = 5;  // 5 periods: the 4 cycles after it do not sleep, and the first never does
+  ControlSettings settings;
+  settings.may_skip = false;
+  run(settings);
+  EXPECT_LE(woken, 15u);
 }
 
 TEST_F(Loop, JudgesNoDeadlineWhenALogIsPlayedAtAnotherSpeed) {
