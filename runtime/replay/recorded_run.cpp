@@ -31,7 +31,9 @@ class Run {
         recorder_(map.graph, map.needs, nullptr, recording.preface().terms.period_ns, map.limits,
                   log_),
         cycle_(cycle_config(run.settings),
-               {map.graph, map.needs, map.load_s, map.pinned, memory_, loader(), recorder_}) {}
+               {map.graph, map.needs, map.load_s, map.pinned, memory_, loader(), recorder_}) {
+    recorder_.keep_trace();
+  }
 
   std::optional<RecordedRunResult> drive(const std::string& events_path, std::string& fault);
 

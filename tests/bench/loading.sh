@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # usage: loading.sh BIN SOURCE DB ROUNDS: how fast zones are loaded, beside the same work written plainly, LZ4 alone,
 # memcpy and `lz4 -b`; how long a cold zone takes from the decision to its first usable signature, beside dd; and how
-# long zoned takes to start. Judged: loading decodes at least 0.8 times as fast as the plain copy + XXH3 + LZ4; the
-# targets that zone_latency and start_time name.
+# long zoned takes to start. Judged: loading decodes at least 0.8 times as fast as the plain copy + XXH3 + LZ4, and what
+# zone_latency and start_time judge; their targets, which need a machine that does nothing else, are told.
 set -euo pipefail
 bin=$1 source=$2 db=$3 rounds=$4
 work=$(mktemp -d "${TMPDIR:-/var/tmp}/zonepack-XXXXXX")  # on a disk: what lies in memory is never cold
