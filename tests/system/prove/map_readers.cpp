@@ -54,7 +54,7 @@ void read_until_zoned_ends(Client& client, std::uint32_t seed, Counts& counts) {
       return;
     }
     const ZoneId zone = (*zones)[engine() % zones->size()].zone;
-    if (turn % 8 == 0) {
+    if (turn % 2 == 0) {
       if (const auto lease = client.lease(zone)) {
         ++counts.leases;
         if (engine() % 2 == 0) static_cast<void>(client.release(*lease));  // or it runs out

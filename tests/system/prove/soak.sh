@@ -54,12 +54,18 @@ zoned=$!
 "$bin/map_readers" "$ZONED_SOCKET" 1 >"$work/readers.json" 2>&1 &
 readers=$!
 
-look() {  # resident KiB, locked KiB, threads, descriptors, files
-  local status files
-  status=$(awk '/^VmRSS|^VmLck|^Threads/ { printf "%s ", $2 }' /proc/$zoned/status 2>/dev/null) || return 1
-  files=$(find "$work/state" -type f 2>/dev/null | wc -l)
-  [ "$(wc -w <<<"$status")" = 3 ] || return 1
-  echo "$status $(ls /proc/$zoned/fd 2>/dev/null | wc -l) $files"
+look() {  # resident KiB, locked KiB, threads, descriptors, files; by the shell alone, which is quick
+  local key value rest resident= locked= threads=
+  while read -r key value rest; do
+    case $key in
+      VmRSS:) resident=$value ;;
+      VmLck:) locked=$value ;;
+      Threads:) threads=$value ;;
+    esac
+  done 2>/dev/null <"/proc/$zoned/status" || return 1
+  [ -n "$resident" ] || return 1
+  local descriptors=(/proc/$zoned/fd/*) files=("$work"/state/* "$work"/state/flight/*)
+  echo "$resident $locked $threads ${#descriptors[@]} ${#files[@]}"
 }
 started=$SECONDS
 sleep 0.3
