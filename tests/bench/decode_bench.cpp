@@ -3,8 +3,9 @@
 // LZ4, every check) against the same work written plainly (pread in pieces of the same length,
 // XXH3, LZ4_decompress_safe), against LZ4_decompress_safe alone, over the same chunks into the same
 // slots, and against memcpy of what is decoded. They take turns on every zone; time is the thread's
-// own, so that other programs do not count. Opening a pack and reading its index is told apart; both readers begin with a pack
-// just opened, because the first bytes read through a new file cost more than the next.
+// own, so that other programs do not count. Opening a pack and reading its index is told apart;
+// both readers begin with a pack just opened, because the first bytes read through a new file cost
+// more than the next.
 //
 //   decode_bench MAP [ROUNDS [DECODED]]: all zones' decoded bytes are written to the file DECODED
 #include <lz4.h>
@@ -204,8 +205,8 @@ void measure(const std::string& folder, const std::string& name, PayloadMask pay
   }
   const double mb = static_cast<double>(decoded) * 3 * rounds / 1e6;
   std::printf("%-9s %9.1f %7.0f %7.0f %7.0f %7.0f   %6.3f %6.3f %6.3f   ", name.c_str(),
-              static_cast<double>(decoded) / 1e6, mb / copy_s, mb / lz4_s, mb / plain_s, mb / loader_s,
-              plain_s / loader_s, lz4_s / loader_s, open_s / loader_s);
+              static_cast<double>(decoded) / 1e6, mb / copy_s, mb / lz4_s, mb / plain_s,
+              mb / loader_s, plain_s / loader_s, lz4_s / loader_s, open_s / loader_s);
   for (const double p : {0.5, 0.99, 0.999, 1.0}) std::printf(" %6.3f", percentile(over_plain, p));
   std::printf("  ");
   for (const double p : {0.5, 0.99, 0.999, 1.0}) std::printf(" %6.3f", percentile(over_lz4, p));

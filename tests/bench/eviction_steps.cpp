@@ -3,7 +3,8 @@
 // times, inside measured(): for counting its instructions, which must not depend on any of these.
 // Prints the nanoseconds of one.
 //
-//   valgrind --tool=callgrind --toggle-collect='measured(*)' eviction_steps SLOTS ZONES LEASES COUNT
+//   valgrind --tool=callgrind --toggle-collect='measured(*)' eviction_steps SLOTS ZONES LEASES
+//   COUNT
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

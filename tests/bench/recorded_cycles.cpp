@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drives a recording's inputs through the cycle in one thread, each run of it inside measured(), for
-// counting its instructions (instructions.sh). Prints what each cycle was given: its number, frames,
-// corrections, loads and commands, and how many events it told.
+// Drives a recording's inputs through the cycle in one thread, each run of it inside measured(),
+// for counting its instructions (instructions.sh). Prints what each cycle was given: its number,
+// frames, corrections, loads and commands, and how many events it told.
 //
 //   recorded_cycles RECORDING [CYCLES]
 #include <cstdio>

@@ -67,10 +67,11 @@ int run(int rounds, const std::string& socket, char** command) {
   }
   std::sort(times.begin(), times.end());
   const double middle = times[times.size() / 2];
-  std::printf("start to first zone usable, ms: %.1f least, %.1f in the middle, %.1f most of %zu; "
-              "target %.0f: %s\n",
-              times.front(), middle, times.back(), times.size(), kTarget_ms,
-              middle <= kTarget_ms ? "met" : "MISSED");
+  std::printf(
+      "start to first zone usable, ms: %.1f least, %.1f in the middle, %.1f most of %zu; "
+      "target %.0f: %s\n",
+      times.front(), middle, times.back(), times.size(), kTarget_ms,
+      middle <= kTarget_ms ? "met" : "MISSED");
   return middle <= kMost_ms ? 0 : 1;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// usage: map_readers SOCKET COUNT: programs of zonepack::client that read whatever zones zoned holds
-// at SOCKET, where they stand, from when it is there until it ends. Prints what all of them read
-// together as one JSON object; exits with 1 when one was told damage, crashed, or read nothing.
+// usage: map_readers SOCKET COUNT: programs of zonepack::client that read whatever zones zoned
+// holds at SOCKET, where they stand, from when it is there until it ends. Prints what all of them
+// read together as one JSON object; exits with 1 when one was told damage, crashed, or read
+// nothing.
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -116,10 +117,11 @@ int run(const std::string& socket, std::uint32_t count) {
     int status = 0;
     well = waitpid(pid, &status, 0) == pid && WIFEXITED(status) && WEXITSTATUS(status) == 0 && well;
   }
-  std::printf("{\"readers\": %u, \"good\": %llu, \"expired\": %llu, \"absent\": %llu, \"damaged\": "
-              "%llu, \"leases\": %llu, \"bytes\": %llu, \"ended_well\": %s}\n",
-              count, ull{counts.good}, ull{counts.expired}, ull{counts.absent},
-              ull{counts.damaged}, ull{counts.leases}, ull{counts.bytes}, well ? "true" : "false");
+  std::printf(
+      "{\"readers\": %u, \"good\": %llu, \"expired\": %llu, \"absent\": %llu, \"damaged\": "
+      "%llu, \"leases\": %llu, \"bytes\": %llu, \"ended_well\": %s}\n",
+      count, ull{counts.good}, ull{counts.expired}, ull{counts.absent}, ull{counts.damaged},
+      ull{counts.leases}, ull{counts.bytes}, well ? "true" : "false");
   return well && counts.good > 0 && counts.damaged == 0 ? 0 : 1;
 }
 
