@@ -37,9 +37,10 @@ void ControlLoop::run() noexcept {
   std::int64_t deadline_ns = monotonic_ns();
   for (std::uint64_t cycle = 0; !stop_.load(std::memory_order_relaxed); ++cycle) {
     if (!ports_.clock.await_inputs(cycle)) break;
+    const bool waits = monotonic_ns() < deadline_ns;
     sleep_until_ns(deadline_ns);
     const std::int64_t began_ns = monotonic_ns();
-    wakeup_.add(began_ns - deadline_ns);
+    if (waits) wakeup_.add(began_ns - deadline_ns);
     deadline_ns = next_deadline(deadline_ns, began_ns);
     step(cycle, began_ns);
     if (!ports_.clock.more()) break;

@@ -96,7 +96,8 @@ class ControlLoop {
   // Cycles begun so far; any thread.
   std::uint64_t cycles() const noexcept { return cycles_.load(std::memory_order_relaxed); }
 
-  // In the control thread, or after run() has returned.
+  // In the control thread, or after run() has returned. Woken: begun after the deadline that was
+  // slept for; cycles of a log that hurry after a late one are not woken.
   const Histogram& wakeup() const noexcept { return wakeup_; }
   const Histogram& work() const noexcept { return work_; }
   const LiveStatus& last_status() const noexcept { return status_; }

@@ -36,7 +36,7 @@ double us(std::int64_t ns) { return static_cast<double>(ns) / 1000; }
 
 LiveFigures::Timing timing_of(const Histogram& histogram) {
   const TimingFigures figures = histogram.figures();
-  return {us(figures.p50), us(figures.p99), us(figures.p9999), us(figures.max)};
+  return {us(figures.p50), us(figures.p99), us(figures.p999), us(figures.p9999), us(figures.max)};
 }
 
 }  // namespace
@@ -422,6 +422,9 @@ std::optional<RunSummary> LiveRun::finish(std::string& fault) {
   live.missed_deadlines = last.overload.missed_deadlines;
   live.cycle_us = timing_of(p.loop->work());
   live.wakeup_us = timing_of(p.loop->wakeup());
+  const WorstCycle& worst = last.worst;
+  live.worst = {worst.cycle,  us(worst.ns),      us(worst.step_ns), to_string(worst.step),
+                worst.frames, worst.corrections, worst.loads,       worst.commands};
   live.lost_events = last.overload.lost_events;
   live.ready_us = timing_of(p.lines.outputs.ready_latency());
   live.ready_count = p.lines.outputs.ready_latency().count();

@@ -58,7 +58,9 @@ class Run final : public EventSink {
           return std::string_view(follower_.map().driven().graph.name(zone));
         }),
         recorder_(map->driven().graph, map->driven().needs, nullptr, terms_.period_ns,
-                  map->driven().limits, log_) {}
+                  map->driven().limits, log_) {
+    recorder_.keep_trace();
+  }
 
   void on_event(const Event& event) noexcept override {
     follower_.follow(event.map);

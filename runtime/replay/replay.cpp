@@ -27,7 +27,9 @@ class Run {
         loader_(map.slots, map.work, input.terms.rates, filler_.get()),
         bus_(&input.frames),
         log_([this](ZoneId zone) { return std::string_view(map_.graph.name(zone)); }),
-        recorder_(map.graph, map.needs, input.truth, input.terms.period_ns, map.limits, log_) {}
+        recorder_(map.graph, map.needs, input.truth, input.terms.period_ns, map.limits, log_) {
+    recorder_.keep_trace();
+  }
 
   std::optional<ReplayResult> drive(std::string& fault);
 

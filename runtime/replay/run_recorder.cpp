@@ -63,8 +63,10 @@ void RunRecorder::begin_with(ZoneId zone) noexcept {
 
 void RunRecorder::on_event(const Event& event) noexcept {
   log_.on_event(event);
-  trace_.events.push_back(
-      {static_cast<double>(event.t_ns) * 1e-9, to_string(event.kind), drawn(event.zone)});
+  if (keeps_trace_) {
+    trace_.events.push_back(
+        {static_cast<double>(event.t_ns) * 1e-9, to_string(event.kind), drawn(event.zone)});
+  }
   switch (event.kind) {
     case EventKind::kLoadStarted:
       held_[event.zone] = Held::kCharged;
@@ -97,7 +99,7 @@ void RunRecorder::after_cycle(const CycleRecord& cycle) {
     errors_m_.push_back(static_cast<float>(
         distance_m(Point2{truth.x_m, truth.y_m}, Point2{estimate.x_m, estimate.y_m})));
   }
-  keep_sample(cycle);
+  if (keeps_trace_) keep_sample(cycle);
 }
 
 void RunRecorder::check_limits(const CycleRecord& cycle) {

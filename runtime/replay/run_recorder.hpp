@@ -54,6 +54,10 @@ class RunRecorder final : public EventSink {
 
   // Fills the parts that are known here.
   void summarise(RunSummary& summary) const;
+
+  // Without keep_trace() before the run, empty: a trace grows with the run, which a robot has no
+  // memory for.
+  void keep_trace() noexcept { keeps_trace_ = true; }
   RunTrace take_trace() { return std::move(trace_); }
 
  private:
@@ -88,6 +92,7 @@ class RunRecorder final : public EventSink {
   ByteCount peak_bytes_ = 0;
   ResidencyCounters counters_;
   std::vector<float> errors_m_;
+  bool keeps_trace_ = false;
   RunTrace trace_;
 };
 

@@ -17,7 +17,13 @@ struct PoseError {
 // What a live run measured of itself; "live" is not about replays.
 struct LiveFigures {
   struct Timing {
-    double p50 = 0, p99 = 0, p9999 = 0, max = 0;  // microseconds
+    double p50 = 0, p99 = 0, p999 = 0, p9999 = 0, max = 0;  // microseconds
+  };
+  struct Worst {  // the longest cycle, and why
+    std::uint64_t cycle = 0;
+    double us = 0, step_us = 0;
+    const char* step = "";  // its longest part
+    std::uint32_t frames = 0, corrections = 0, loads = 0, commands = 0;
   };
   ByteCount process_peak_bytes = 0;  // resident, by the kernel
   ByteCount overhead_bytes = 0;      // of that, what lies outside of slots and map tables
@@ -30,6 +36,7 @@ struct LiveFigures {
   Timing ready_us;   // from the end of a load to map_ready, of loads that it waited for
   std::uint64_t ready_count = 0;
   std::uint64_t lines_not_working = 0;  // GPIO lines, at the end
+  Worst worst;
   std::uint64_t lost_events = 0;
   bool realtime = false;
   bool memory_locked = false;

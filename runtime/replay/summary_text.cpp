@@ -61,7 +61,17 @@ std::string error_json(const std::optional<PoseError>& error) {
 
 std::string timing_json(const LiveFigures::Timing& timing) {
   return "{\"p50\": " + shortest(timing.p50) + ", \"p99\": " + shortest(timing.p99) +
+         ", \"p999\": " + shortest(timing.p999) +
          ", \"p9999\": " + shortest(timing.p9999) + ", \"max\": " + shortest(timing.max) + "}";
+}
+
+std::string worst_json(const LiveFigures::Worst& worst) {
+  return "{\"cycle\": " + std::to_string(worst.cycle) + ", \"us\": " + shortest(worst.us) +
+         ", \"step\": " + json_quoted(worst.step) + ", \"step_us\": " + shortest(worst.step_us) +
+         ", \"frames\": " + std::to_string(worst.frames) +
+         ", \"corrections\": " + std::to_string(worst.corrections) +
+         ", \"loads\": " + std::to_string(worst.loads) +
+         ", \"commands\": " + std::to_string(worst.commands) + "}";
 }
 
 void add_live(JsonObject& json, const LiveFigures& live) {
@@ -76,6 +86,7 @@ void add_live(JsonObject& json, const LiveFigures& live) {
   json.add("map_ready_latency_us", timing_json(live.ready_us));
   json.add("map_ready_latency_count", live.ready_count);
   json.add("lines_not_working", live.lines_not_working);
+  json.add("worst_cycle", worst_json(live.worst));
   json.add("lost_events", live.lost_events);
   json.add("realtime", live.realtime ? "true" : "false");
   json.add("memory_locked", live.memory_locked ? "true" : "false");

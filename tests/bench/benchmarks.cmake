@@ -2,9 +2,6 @@
 # Benchmarks: run by hand, on a machine that does nothing else. Each says what it compares.
 
 if(ZONEPACK_BUILD_BENCHMARKS)
-  add_executable(decode_bench ${CMAKE_CURRENT_LIST_DIR}/decode_bench.cpp)
-  zonepack_settings(decode_bench)
-  target_link_libraries(decode_bench PRIVATE zonepack_core)
   add_executable(storage_bench ${CMAKE_CURRENT_LIST_DIR}/storage_bench.cpp)
   zonepack_settings(storage_bench)
   target_link_libraries(storage_bench PRIVATE zonepack_core)

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loading a map's zones from a warm page cache: the runtime's loader (ZoneLoad::step: read, XXH3,
 // LZ4, every check) against the same work written plainly (pread in pieces of the same length,
-// XXH3, LZ4_decompress_safe) and against LZ4_decompress_safe alone, over the same chunks into the
-// same slots. The three take turns on every zone; time is the thread's own, so that other programs
-// do not count. Opening a pack and reading its index is told apart; both readers begin with a pack
-// just opened, because the first bytes read through a new file cost more than the next.
+// XXH3, LZ4_decompress_safe), against LZ4_decompress_safe alone, over the same chunks into the same
+// slots, and against memcpy of what is decoded. They take turns on every zone; time is the thread's
+// own, so that other programs do not count. Opening a pack and reading its index is told apart;
+// both readers begin with a pack just opened, because the first bytes read through a new file cost
+// more than the next.
 //
-//   decode_bench MAP [ROUNDS]
+//   decode_bench MAP [ROUNDS [DECODED]]: all zones' decoded bytes are written to the file DECODED
 #include <lz4.h>
 #include <time.h>
 
@@ -66,6 +67,15 @@ void unpack(const PlainChunk& chunk, const std::byte* stored) {
 double time_lz4(const Zone& zone) {
   const double begin = now_s();
   for (const PlainChunk& chunk : zone.chunks) unpack(chunk, chunk.in_memory);
+  return now_s() - begin;
+}
+
+double time_copy(const Zone& zone, std::span<std::byte> into) {
+  const double begin = now_s();
+  for (const PlainChunk& chunk : zone.chunks) {
+    std::memcpy(into.data(), chunk.out, chunk.decoded);
+    asm volatile("" : : "r"(into.data()) : "memory");
+  }
   return now_s() - begin;
 }
 
@@ -155,7 +165,7 @@ void measure(const std::string& folder, const std::string& name, PayloadMask pay
   Arena arena(most, kSlotBytes);
   std::vector<std::byte*> slots;
   for (SlotIndex i = 0; i < most; ++i) slots.push_back(arena.slot(i).data());
-  std::vector<std::byte> buffer(kReadBufferBytes);
+  std::vector<std::byte> buffer(kReadBufferBytes), copied(kSlotBytes);
   std::vector<Zone> zones;
   std::uint64_t decoded = 0;
   for (ZoneId id = 0; id < catalog->zones.size(); ++id) {
@@ -163,10 +173,11 @@ void measure(const std::string& folder, const std::string& name, PayloadMask pay
     decoded += zones.back().decoded;
   }
   std::vector<double> over_plain, over_lz4;
-  double lz4_s = 0, plain_s = 0, loader_s = 0, open_s = 0;
+  double copy_s = 0, lz4_s = 0, plain_s = 0, loader_s = 0, open_s = 0;
   for (int round = -1; round < rounds; ++round) {
-    double lz4 = 0, plain = 0, loader = 0, opening = 0;
+    double copy = 0, lz4 = 0, plain = 0, loader = 0, opening = 0;
     for (std::size_t i = 0; i < zones.size(); ++i) {
+      for (int turn = 0; turn < 3; ++turn) copy += time_copy(zones[i], copied);
       for (int turn = 0; turn < 9; ++turn) {  // each goes first, second and third
         switch ((turn + turn / 3) % 3) {
           case 0:
@@ -186,19 +197,39 @@ void measure(const std::string& folder, const std::string& name, PayloadMask pay
     if (round < 0) continue;  // warms caches
     over_plain.push_back(loader / plain);
     over_lz4.push_back(loader / lz4);
+    copy_s += copy;
     lz4_s += lz4;
     plain_s += plain;
     loader_s += loader;
     open_s += opening;
   }
   const double mb = static_cast<double>(decoded) * 3 * rounds / 1e6;
-  std::printf("%-9s %9.1f %7.0f %7.0f %7.0f   %6.3f %6.3f %6.3f   ", name.c_str(),
-              static_cast<double>(decoded) / 1e6, mb / lz4_s, mb / plain_s, mb / loader_s,
-              plain_s / loader_s, lz4_s / loader_s, open_s / loader_s);
+  std::printf("%-9s %9.1f %7.0f %7.0f %7.0f %7.0f   %6.3f %6.3f %6.3f   ", name.c_str(),
+              static_cast<double>(decoded) / 1e6, mb / copy_s, mb / lz4_s, mb / plain_s,
+              mb / loader_s, plain_s / loader_s, lz4_s / loader_s, open_s / loader_s);
   for (const double p : {0.5, 0.99, 0.999, 1.0}) std::printf(" %6.3f", percentile(over_plain, p));
   std::printf("  ");
   for (const double p : {0.5, 0.99, 0.999, 1.0}) std::printf(" %6.3f", percentile(over_lz4, p));
   std::printf("\n");
+}
+
+void write_decoded(const std::string& folder, const std::string& path) {
+  const Result<Catalog> catalog = Catalog::open(folder, kDefaultPayload);
+  if (!catalog) fail(folder + ": " + to_string(catalog.error().code));
+  std::uint32_t most = 1;
+  for (const CatalogZone& zone : catalog->zones) most = std::max(most, zone.slots);
+  Arena arena(most, kSlotBytes);
+  std::vector<std::byte*> slots;
+  for (SlotIndex i = 0; i < most; ++i) slots.push_back(arena.slot(i).data());
+  std::ofstream out(path, std::ios::binary);
+  for (ZoneId id = 0; id < catalog->zones.size(); ++id) {
+    const Zone zone = prepare(*catalog, id, slots);
+    time_lz4(zone);
+    for (const PlainChunk& chunk : zone.chunks) {
+      out.write(reinterpret_cast<const char*>(chunk.out), chunk.decoded);
+    }
+  }
+  if (!out.flush()) fail(path + ": cannot be written");
 }
 
 void run(const std::string& folder, int rounds) {
@@ -210,10 +241,10 @@ void run(const std::string& folder, int rounds) {
   std::printf("%s, %d rounds over all zones, each kind with its core; MB/s of decoded bytes\n\n",
               hardware().c_str(), rounds);
   std::printf(
-      "                          MB/s              loader's speed over     open   "
+      "                              MB/s                  loader's speed over     open   "
       "time over plain               time over LZ4\n");
   std::printf(
-      "loaded           MB     LZ4   plain  loader    plain    LZ4         "
+      "loaded           MB  memcpy     LZ4   plain  loader    plain    LZ4         "
       "    p50    p99  p99.9    max      p50    p99  p99.9    max\n");
   for (std::uint32_t k = 0; k < kPayloadKinds; ++k) {
     const auto kind = static_cast<fb::PayloadKind>(k);
@@ -233,11 +264,12 @@ void run(const std::string& folder, int rounds) {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::cerr << "usage: decode_bench MAP [ROUNDS]\n";
+    std::cerr << "usage: decode_bench MAP [ROUNDS [DECODED]]\n";
     return 2;
   }
   try {
     zonepack::run(argv[1], argc > 2 ? std::max(1, std::atoi(argv[2])) : 1000);
+    if (argc > 3) zonepack::write_decoded(argv[1], argv[3]);
   } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";
     return 1;

@@ -1,71 +1,154 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# usage: memory.sh BIN SOURCE DB MISSION SPEED: a mission driven live at plan's smallest budget inside a memory cgroup
-# limited to budget + 16 MiB, caches dropped before: the kernel kills nothing and its limit is not hit. Then the limit
-# is lowered until the run fails, which shows that it can. MISSION: a folder with can0.log and corrections.txt.
-# Exit code 77 where the machine lets nobody limit memory.
+# usage: memory.sh BIN SOURCE DB MISSION SPEED SECONDS: a mission driven live at plan's smallest budget inside a memory
+# cgroup limited to budget + 16 MiB, caches dropped before: the kernel kills nothing and its limit is not hit, though
+# ten programs read along, though a neighbour takes all memory that is left. At SPEED times its speed, and at its own
+# for SECONDS (0: not). Then the limit is lowered until the run fails, which shows that it can.
+# MISSION: a folder with can0.log and corrections.txt. Exit code 77 where the machine lets nobody limit memory.
 set -euo pipefail
-bin=$1 source=$2 db=$3 mission=$4 speed=$5
-overhead=$((16 << 20))
+bin=$1 source=$2 db=$3 mission=$4 speed=$5 seconds=$6
+. "$(dirname "$0")/lib.sh"
+overhead=$((16 << 20)) neighbours=$((256 << 20))
 work=$(mktemp -d)
-group=
 cleanup() {
-  [ -z "$group" ] || rmdir "$group" 2>/dev/null || true
+  local group
+  jobs -p | xargs -r kill 2>/dev/null || true
+  for group in "$work"/*/group; do
+    [ ! -f "$group" ] || { remove_group "$(cat "$group")/robot"; remove_group "$(cat "$group")"; }
+  done
   rm -rf "$work"
 }
 trap cleanup EXIT
-fail() { echo "memory: $*" >&2; exit 1; }
+find_memory_cgroups || { echo "memory: no memory cgroup here"; exit 77; }
 
-v1=/sys/fs/cgroup/memory v2=/sys/fs/cgroup
-if [ -f $v1/memory.limit_in_bytes ]; then
-  base=$v1 limit_file=memory.limit_in_bytes peak_file=memory.max_usage_in_bytes
-elif grep -qw memory $v2/cgroup.controllers 2>/dev/null; then
-  base=$v2 limit_file=memory.max peak_file=memory.peak
-else
-  echo "memory: no memory cgroup here"
-  exit 77
-fi
-
-hits() {  # how often the limit was hit
-  if [ $base = $v1 ]; then cat "$group/memory.failcnt"; else awk '$1 == "max" { print $2 }' "$group/memory.events"; fi
+# A neighbour in the same room for memory, which wants more than there is and is the first to be killed for it; its
+# pages and files push against everything that can be pushed out. Again and again until it is told to stop.
+take_all_memory() {  # ROOM
+  local taker=0
+  trap 'kill $taker 2>/dev/null; wait $taker 2>/dev/null; exit 0' TERM
+  while :; do
+    stress-ng --quiet --vm 1 --vm-bytes "$((2 * $1))" --vm-keep --oomable --temp-path "$work" &
+    taker=$!
+    wait $taker 2>/dev/null || true
+    sleep 0.05
+  done
 }
 
-run() {  # LIMIT: the run's exit code in $code
-  group=$base/zonepack-proof-$$
-  mkdir "$group" 2>/dev/null || { echo "memory: cgroups cannot be made here"; exit 77; }
-  echo "$1" >"$group/$limit_file"
-  sync
-  if [ -w /proc/sys/vm/drop_caches ]; then echo 3 >/proc/sys/vm/drop_caches; fi
-  code=0
+# A run in a cgroup; all that is known of it goes to $work/NAME.
+drive() {  # NAME LIMIT SPEED SECONDS alone|readers|neighbour
+  local name=$1 limit=$2 at=$3 stop=$4 company=$5 pid watch code=0 companion=0
+  local run=$work/$name group=$cgroup_base/zonepack-proof-$$-$1
+  mkdir "$run"
+  echo "$group" >"$run/group"
+  make_group "$group" $((limit + neighbours)) && make_group "$group/robot" "$limit" ||
+    { echo 77 >"$run/code"; return; }
+  export ZONED_SOCKET=$run/zoned.sock STATE_DIRECTORY=$run/state
+  mkdir "$run/state"
+  if [ "$company" = neighbour ]; then
+    (
+      echo "$BASHPID" >"$group/cgroup.procs"
+      echo 1000 >/proc/self/oom_score_adj
+      take_all_memory $((limit + neighbours))
+    ) >/dev/null 2>&1 &
+    companion=$!
+    sleep 1
+  fi
   (
-    echo "$BASHPID" >"$group/cgroup.procs"
+    echo "$BASHPID" >"$group/robot/cgroup.procs"
     exec "$bin/zoned" run --config "$source/config/agilex.yaml" --map "$work/map" --budget "$budget" \
-      --can "log:$mission/can0.log@$speed" --corrections "$mission/corrections.txt" --json "$work/run.json"
-  ) >"$work/out.txt" 2>&1 || code=$?
-  peak=$(cat "$group/$peak_file") hit=$(hits)
-  for _ in $(seq 50); do rmdir "$group" 2>/dev/null && break; sleep 0.1; done
-  group=
+      --can "sim:$work/mission.yaml@$at" --corrections "$work/mission.txt" --json "$run/run.json"
+  ) >"$run/out.txt" 2>&1 &
+  pid=$!
+  chrt -f 1 "$bin/memory_watch" $pid >"$run/watch.json" &
+  watch=$!
+  if [ "$company" = readers ]; then
+    "$bin/map_readers" "$ZONED_SOCKET" 10 >"$run/readers.json" 2>"$run/readers.txt" &
+    companion=$!
+  fi
+  if ((stop > 0)); then (sleep "$stop" && kill -TERM $pid 2>/dev/null) & fi
+  wait $pid || code=$?
+  echo $code >"$run/code"
+  wait $watch || true
+  if [ "$company" = readers ]; then
+    wait $companion || echo 1 >"$run/readers_failed"
+  elif [ "$company" = neighbour ]; then
+    limit_hits "$group" >"$run/neighbour_hits"
+    kill -TERM $companion
+    wait $companion || true
+  fi
+  cat "$group/robot/$peak_file" >"$run/peak"
+  limit_hits "$group/robot" >"$run/hits"
+  remove_group "$group/robot"
+  remove_group "$group"
 }
 
-export ZONED_SOCKET=$work/zoned.sock
+of() { jq -r "$2" "$work/$1"; }
+mib() { awk -v n="$1" 'BEGIN { printf "%.2f", n / 1048576 }'; }
+
+row() {  # NAME
+  local run=$work/$1 watched=$1/watch.json
+  printf '%-22s %7.1f %8s %5s %8s %6s %6s %6s %6s %8s %5s\n' "$1" "$(of "$watched" .seconds)" \
+    "$(mib "$(cat "$run/peak")")" "$(cat "$run/hits")" "$(of "$watched" .resident.samples)" \
+    "$(mib "$(of "$watched" .resident.least)")" "$(mib "$(of "$watched" .resident.most)")" \
+    "$(mib "$(of "$watched" .locked.least)")" "$(mib "$(of "$watched" .locked.most)")" \
+    "$(mib "$(of "$watched" .share.most)")" "$(of "$watched" .share.samples)"
+}
+
+judge() {  # NAME LIMIT
+  local run=$work/$1 code
+  code=$(cat "$run/code")
+  ((code != 77)) || { echo "memory: cgroups cannot be made here"; exit 77; }
+  ((code == 0)) || fail "$1: exit code $code: $(cat "$run/out.txt")"
+  row "$1"
+  (($(cat "$run/hits") == 0)) || fail "$1: the limit was hit $(cat "$run/hits") times"
+  jq -e '.budget_violations == 0 and .minor_faults == 0 and .major_faults == 0 and .allocations == 0' \
+    "$run/run.json" >/dev/null || fail "$1: $(cat "$run/run.json")"
+  jq -e ".most_resident_ever <= $2 and .share.most <= $2 and .locked.most <= $2" "$run/watch.json" >/dev/null ||
+    fail "$1: more than the limit of $2 bytes: $(cat "$run/watch.json")"
+  jq -e '.locked.least == .locked.most' "$run/watch.json" >/dev/null || fail "$1: locked memory is not constant"
+  jq -e '.resident.samples >= 500 * .seconds and .share.samples >= 0.5 * .seconds - 1' "$run/watch.json" >/dev/null ||
+    fail "$1: looked at less than 500 times a second: $(cat "$run/watch.json")"
+  if [ -f "$run/readers.json" ]; then
+    [ ! -f "$run/readers_failed" ] || fail "$1: $(cat "$run/readers.json" "$run/readers.txt")"
+    printf '%-22s %s\n' "" "$(of "$1/readers.json" '"\(.readers) readers: \(.good) good reads, \(.expired) expired, \(.damaged) damaged, \(.leases) leases"')"
+  fi
+  if [ -f "$run/neighbour_hits" ]; then
+    printf '%-22s the neighbour found no more memory %s times\n' "" "$(cat "$run/neighbour_hits")"
+    (($(cat "$run/neighbour_hits") > 0)) || fail "$1: the neighbour never took all memory"
+  fi
+}
+
 "$bin/zonepack" build --db "$db" --zones "$source/tests/data/zones.geojson" --out "$work/map" \
   --payload features,scan,grid >/dev/null 2>&1
 budget=$("$bin/zonepack" plan "$work/map" --json - 2>/dev/null | jq .smallest_budget_bytes)
 limit=$((budget + overhead))
-run $limit
-printf 'memory: %-46s %12s bytes\n' "budget (plan's smallest)" "$budget" "limit (budget + 16 MiB)" "$limit" \
-  "most charged, by the kernel" "$peak" "beside the budget" $((peak - budget))
-((code == 0)) || fail "exit code $code: $(cat "$work/out.txt")"
-((hit == 0)) || fail "the limit was hit $hit times"
-jq -e '.budget_violations == 0 and .minor_faults == 0 and .major_faults == 0 and .allocations == 0' "$work/run.json" \
-  >/dev/null || fail "$(cat "$work/run.json")"
+once=$(log_seconds "$mission")
+repeat_mission "$mission" $((seconds / ${once%.*} + 1)) "$work/mission"
 
-lower=$peak
-for _ in $(seq 12); do
+echo "budget (plan's smallest) $budget bytes, $(mib "$budget") MiB; limit (budget + 16 MiB) $limit bytes, $(mib $limit) MiB"
+echo "MiB                    watched   charged  hits  looked   resident       locked   share  looked"
+printf '%-22s %7s %8s %5s %8s %6s %6s %6s %6s %8s %5s\n' "" seconds most "" "1 kHz" least most least most most "1 Hz"
+for company in alone readers neighbour; do
+  drop_caches
+  drive "$company@$speed" $limit "$speed" 0 $company
+  judge "$company@$speed" $limit
+done
+if ((seconds > 0)); then  # side by side: only memory is judged, and it is each one's own
+  drop_caches
+  runs=()
+  for company in alone readers neighbour; do drive "$company@1" $limit 1 "$seconds" $company & runs+=($!); done
+  wait "${runs[@]}"
+  for company in alone readers neighbour; do judge "$company@1" $limit; done
+fi
+
+lower=$(cat "$work/alone@$speed/peak")
+for turn in $(seq 16); do
   lower=$((lower - (1 << 20)))
-  run $lower
-  if ((code != 0 || hit > 0)); then
-    printf 'memory: %-46s %12s bytes (exit code %s, limit hit %s times)\n' "fails under" "$lower" "$code" "$hit"
+  drop_caches
+  drive "lower-$turn" $lower "$speed" 0 alone
+  code=$(cat "$work/lower-$turn/code") hits=$(cat "$work/lower-$turn/hits")
+  if ((code != 0 || hits > 0)); then
+    echo "fails under $lower bytes, $(mib $lower) MiB: exit code $code, limit hit $hits times"
     exit 0
   fi
 done

@@ -79,6 +79,7 @@ class Loop : public testing::Test {
     before_run(loop);
     loop.run();
     cycles = loop.cycles();
+    woken = loop.wakeup().count();
   }
 
   const ZoneGraph graph = testing_support::three_rooms();
@@ -107,6 +108,7 @@ class Loop : public testing::Test {
   Inputs inputs;
   std::function<void(ControlLoop&)> before_run = [](ControlLoop&) {};
   std::uint64_t cycles = 0;
+  std::uint64_t woken = 0;
 };
 
 TEST_F(Loop, RunsUntilTheClockSaysThatItIsOverAndTellsHowItStands) {
@@ -219,6 +221,14 @@ TEST_F(Loop, RunsEveryCycleOfALogHoweverLate) {
   EXPECT_EQ(cycles, 20u);
   EXPECT_GE(overload.missed_deadlines, 1u);
   EXPECT_EQ(overload.skipped_periods, 0u);
+}
+
+TEST_F(Loop, CountsAsWokenOnlyWhatSleptForItsDeadline) {
+  clock.late_cycle = 5;  // 5 periods: the 4 cycles after it do not sleep, and the first never does
+  ControlSettings settings;
+  settings.may_skip = false;
+  run(settings);
+  EXPECT_LE(woken, 15u);
 }
 
 TEST_F(Loop, JudgesNoDeadlineWhenALogIsPlayedAtAnotherSpeed) {

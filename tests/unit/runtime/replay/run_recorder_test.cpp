@@ -109,7 +109,17 @@ TEST_F(Recorder, CountsBlockedTime) {
   EXPECT_DOUBLE_EQ(summary().blocked_s, 0.2);
 }
 
+TEST_F(Recorder, KeepsNothingOfARobotsRunThatGrowsWithIt) {
+  for (int i = 0; i < 5; ++i) cycle(0);
+  hold(0, needs[0]);
+  cycle(0);
+  const RunTrace trace = recorder.take_trace();
+  EXPECT_TRUE(trace.samples.empty());
+  EXPECT_TRUE(trace.events.empty());
+}
+
 TEST_F(Recorder, KeepsEveryChangeAndTenSamplesASecondForDrawing) {
+  recorder.keep_trace();
   for (int i = 0; i < 5; ++i) cycle(0);
   hold(0, needs[0]);
   cycle(0);
