@@ -22,7 +22,7 @@ do_cross() {  # ARCH
 # devices are tested on the virtual robot, whose kernel is a real one.
 test_cross() {
   local units=(pack_format zones odometry)
-  cross_build arm64 installed "${units[@]/#/test_}"
+  cross_build arm64 installed gpio_line_contract "${units[@]/#/test_}"
   stage "tests: arm64 units of the robot under qemu-user"
   ctest --preset arm64 -j "$(nproc)" -R "^($(IFS='|' && echo "${units[*]}"))/"
   make_packages

@@ -5,7 +5,7 @@
 # of output what it found. It may need, in a line "# boot: OPTION...", one of toolchains/robot/boot.sh's options;
 # tests with the same options share a boot, in order of their names, each in a new folder. There are: zoned and
 # can-utils, ip, gpiod's tools and busybox in PATH; /payload/data (tests/data without databases), /payload/map (the
-# sample map), /payload/events.jsonl (what the host decided in the sample run).
+# sample map), /payload/bin (contract tests), /payload/events.jsonl (what the host decided in the sample run).
 set -eu
 data=/payload/data
 run=$data/scenario1_loop
