@@ -25,7 +25,7 @@ enum class Field : std::uint8_t {
 };
 
 constexpr std::size_t kBlockContent = 512 * 1024;
-constexpr std::size_t kFixedRoom = 1024;
+constexpr std::size_t kPrefaceRoom = 1024;
 
 ByteSpan bytes_of(std::string_view text) noexcept { return std::as_bytes(std::span(text)); }
 
@@ -34,10 +34,10 @@ std::string text_of(ByteSpan bytes) {
 }
 
 std::size_t room_for(const RecordingPreface& preface) {
-  std::size_t room = kFixedRoom + preface.program.size() + preface.settings_path.size() +
+  std::size_t room = kPrefaceRoom + preface.program.size() + preface.settings_path.size() +
                      preface.settings.size() + preface.dbc.size() + preface.map_folder.size() +
                      preface.manifest.size();
-  for (const std::string& name : preface.terms.pinned) room += kFixedRoom + name.size();
+  for (const std::string& name : preface.terms.pinned) room += kPrefaceRoom + name.size();
   return room;
 }
 

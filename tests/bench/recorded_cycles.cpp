@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
   auto shared = SharedMap::lay_out(memory->bytes(), zones, map->slots);
   if (!shared || !shared->begin_map(zones)) return fail("the memory cannot be laid out");
   Residency residency(zones, map->limits);
-  RecordedLoader loader;
+  RecordedLoader loader(run->catalog);
   QueuedEvents events;
   if (!map->pin(residency, fault)) return fail(fault);
   Cycle cycle(cycle_config(run->settings), {map->graph, map->needs, map->load_s, map->pinned,
@@ -74,6 +74,7 @@ int main(int argc, char** argv) {
                    start->sigma_rad.value_or(run->settings.pose.start_sigma_rad));
   }
   while (const RecordedInput* const input = recording->next()) {
+    if (input->offer.map != 0) return fail("the map changes in it; take a recording of one map");
     for (const LoadResult& load : input->loads) {
       if (!loader.answer(load)) return fail("the recording is another version's");
     }

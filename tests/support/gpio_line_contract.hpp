@@ -26,7 +26,7 @@ class GpioRig {
   virtual void add_twin() = 0;          // another chip with the same label
   virtual void drive(unsigned line, bool high) = 0;
   virtual bool is_high(unsigned line) = 0;
-  virtual void occupy(unsigned line) = 0;  // by another program, as "other"
+  virtual void occupy(unsigned line) = 0;  // by another program, gpioset
   virtual std::int64_t now_ns() = 0;       // on the clock of the stamps
   virtual void pass(std::int64_t ns) = 0;  // at least
 };
@@ -206,7 +206,7 @@ TEST_P(GpioLineContract, NamesWhatIsMissingHeldOrOfTheOtherDirection) {
             std::string::npos);
   EXPECT_NE(fault_of(name("window")).find("no such line"), std::string::npos);
   rig_->occupy(6);
-  EXPECT_NE(fault_of(name("6")).find("held by other"), std::string::npos);
+  EXPECT_NE(fault_of(name("6")).find("held by gpioset"), std::string::npos);
   const auto taken = rig_->port().open(GpioOutputSettings{.name = name("6")});
   ASSERT_FALSE(taken.ok());
   EXPECT_EQ(taken.error().code, ErrorCode::kBusy);

@@ -20,6 +20,8 @@ make_guest() {
   toolchains/robot/guest.sh "$flavour" build/"$arch"/zonepack-runtime_*.deb
   cp tests/system/guest/*.sh "$payload/tests/"
   cp -r tests/data/scenario1_loop "$payload/data/"
+  mkdir "$payload/bin"
+  cp build/"$arch"/bin/gpio_line_contract "$payload/bin/"
   local host=build/ci/bin
   build_map() {  # FOLDER PAYLOAD
     "$host/zonepack" build --db tests/data/hospital-small.db --zones tests/data/zones.geojson --out "$payload/$1" \
@@ -77,7 +79,7 @@ prepare_robot() {  # arm64|armhf|rt-arm64
   set_flavour "$1" || exit 2
   ready
   build ci --target zonepack zoned
-  cross_build "$arch" zoned zonectl
+  cross_build "$arch" zoned zonectl gpio_line_contract
   toolchains/cross/packages.sh "$arch" runtime
   make_guest
 }

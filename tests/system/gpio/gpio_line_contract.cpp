@@ -66,7 +66,7 @@ class KernelGpioRig final : public GpioRig {
   void occupy(unsigned line) override {
     // Ends when its input does.
     const std::string command =
-        "gpioset -m wait --consumer=other " + chip_.chip() + " " + std::to_string(line) + "=0";
+        "gpioset -m wait " + chip_.chip() + " " + std::to_string(line) + "=0";
     holder_ = popen(command.c_str(), "w");
     for (int i = 0; i < 500 && port().look({chip_name(), std::to_string(line)})->consumer.empty();
          ++i) {

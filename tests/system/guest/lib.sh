@@ -6,7 +6,8 @@
 # tests with the same options share a boot, in order of their names, each in a new folder. There are: zoned and
 # can-utils, ip, gpiod's tools and busybox in PATH; /payload/data (tests/data without databases), /payload/map (the
 # sample map), /payload/map2 (another version of it), /payload/budget (the smallest that map needs, in bytes),
-# /payload/events.jsonl (what the host decided in the sample run). What a test leaves in /data/out goes to the host.
+# /payload/bin (contract tests), /payload/events.jsonl (what the host decided in the sample run). What a test leaves in
+# /data/out goes to the host.
 set -eu
 data=/payload/data
 run=$data/scenario1_loop

@@ -23,7 +23,7 @@ class SimGpioRig final : public GpioRig {
     gpio_.drive("robot", line, high);
   }
   bool is_high(unsigned line) override { return gpio_.is_high("robot", line); }
-  void occupy(unsigned line) override { gpio_.occupy("robot", line, "other"); }
+  void occupy(unsigned line) override { gpio_.occupy("robot", line, "gpioset"); }
   std::int64_t now_ns() override { return gpio_.now_ns(); }
   void pass(std::int64_t ns) override { gpio_.advance_to(gpio_.now_ns() + ns); }
 

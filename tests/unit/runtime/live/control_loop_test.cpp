@@ -47,10 +47,13 @@ class Inputs final : public InputSink {
     frames[cycle] = input.frames.size();
     corrections[cycle] = input.corrections.size();
     commands[cycle] = input.commands.size();
+    edges[cycle] = input.edges.size();
+    for (const LineEdge& edge : input.edges) ages_ns.push_back(input.now_ns - edge.stamp_ns);
     offers[cycle] = input.offer;
     offset_ns = offset;
   }
-  std::array<std::size_t, 64> frames{}, corrections{}, commands{};
+  std::array<std::size_t, 64> frames{}, corrections{}, commands{}, edges{};
+  std::vector<std::int64_t> ages_ns;
   std::uint64_t lost() const noexcept override { return 3; }
 
   std::array<MapOffer, 64> offers{};
@@ -74,6 +77,7 @@ class Loop : public testing::Test {
                                 .poses = &poses,
                                 .commands = &commands,
                                 .replies = &replies,
+                                .edges = &edges,
                                 .recorder = &inputs,
                                 .status = status});
     before_run(loop);
@@ -104,6 +108,7 @@ class Loop : public testing::Test {
   SpscQueue<PoseCorrection> logged{8}, poses{64};
   SpscQueue<Command> commands{64};
   SpscQueue<CommandReply> replies{8};
+  SpscQueue<LineEdge> edges{32};
   Seqlock<LiveStatus> status;
   Inputs inputs;
   std::function<void(ControlLoop&)> before_run = [](ControlLoop&) {};
@@ -197,6 +202,19 @@ TEST_F(Loop, DropsCommandsOnZonesOfAnotherMap) {
   ASSERT_TRUE(replies.pop(reply));
   EXPECT_EQ(reply.map, 1u);
   EXPECT_FALSE(replies.pop(reply));
+}
+
+TEST_F(Loop, TakesAtMostSixteenEdgesACycleAndKeepsTheirAge) {
+  const std::int64_t before_ns = monotonic_ns();
+  for (int i = 0; i < 17; ++i) edges.push({before_ns - 5'000'000, LineEdge::kHold, i % 2 == 0});
+  edges.push({before_ns + 3'600'000'000'000, LineEdge::kHold, false});  // ahead: counts as now
+  run();
+  EXPECT_EQ(inputs.edges[0], 16u);
+  EXPECT_EQ(inputs.edges[1], 2u);
+  ASSERT_EQ(inputs.ages_ns.size(), 18u);
+  EXPECT_GE(inputs.ages_ns[0], 5'000'000);
+  EXPECT_EQ(inputs.ages_ns[17], 0);
+  EXPECT_FALSE(status.load().frozen);  // by the last of them
 }
 
 TEST_F(Loop, LosesWhatAFullQueueCannotTakeAndCountsIt) {

@@ -34,12 +34,12 @@ inline std::string text_of(const std::string& path) {
 }
 
 // The paper's loop through the sample building, driven as a robot would be: cycles come late, are
-// left out, readers hold zones, people pin and freeze, loads fail and are cancelled. What happens
-// when is the seed's to say.
+// left out, readers hold zones, people pin and freeze, loads fail and are cancelled, lines change.
+// What happens when is the seed's to say.
 class RecordedDrive {
  public:
   RecordedDrive()
-      : text_(text_of(std::string(ZONEPACK_SOURCE_DIR) + "/config/agilex.yaml")),
+      : text_(with_lines(text_of(std::string(ZONEPACK_SOURCE_DIR) + "/config/agilex.yaml"))),
         run_{parse_settings(text_, "agilex.yaml").settings,
              sample_catalog(std::string(ZONEPACK_TEST_DATA) + "/zones.geojson", 3)} {
     RunChoices choices;
@@ -96,6 +96,8 @@ class RecordedDrive {
     std::vector<CanFrame> frames(64);
     std::vector<Lease> leases;
     std::vector<LoadResult> loads;
+    std::mt19937_64 hand(seed);  // on the lines
+    bool held = false;
     std::int64_t nominal_ns = *bus.next_arrival_ns();
     for (std::uint64_t number = 0; bus.next_arrival_ns(); ++number) {
       const std::int64_t now_ns =
@@ -109,11 +111,18 @@ class RecordedDrive {
       loads.clear();
       while (const auto load = loader.poll()) loads.push_back(*load);
       const std::vector<Command> commands = made_up(random, map->needs.size(), leases);
+      std::vector<LineEdge> edges;
+      if (hand() % 400 == 0) edges.push_back({now_ns - 1000, LineEdge::kHold, held = !held});
+      if (hand() % 300 == 0) edges.push_back({now_ns, LineEdge::kFirstMarker, hand() % 3 != 0});
+      if (number % 2500 == 2000) edges.push_back({now_ns - 30'000'000, LineEdge::kDock, true});
+      if (number % 2500 == 2010) edges.push_back({now_ns, LineEdge::kDock, false});
       const CycleInput input{now_ns,
                              {frames.data(), count},
                              {corrections->data() + first, taken - first},
                              loads,
-                             commands};
+                             commands,
+                             {},
+                             edges};
       const std::int64_t offset_ns = 1000 + static_cast<std::int64_t>(number / 1000);
       tap.on_inputs(number, input, offset_ns);
       cycle.run(input);
@@ -140,6 +149,15 @@ class RecordedDrive {
   std::set<std::string> words;  // of all events so far
 
  private:
+  // The example's lines, which are comments there.
+  static std::string with_lines(std::string text) {
+    for (const std::string key :
+         {"dock: {chip", "hold: {chip", "zone_markers:", "  kitchen_door: {"}) {
+      text.replace(text.find("# " + key), 2 + key.size(), key);
+    }
+    return text;
+  }
+
   struct Told final : EventSink {
     Told(EventSink& to_log, InputWriter& to_writer, std::set<std::string>& seen)
         : log(to_log), writer(to_writer), words(seen) {}
