@@ -18,25 +18,25 @@ do_cross() {  # ARCH
   make_packages
 }
 
-# The part of `toolchains/run test`: units that compute. What takes long is left to `cross`; threads, memory and
-# devices are tested on the virtual robot, whose kernel is a real one.
+# The part of `toolchains/run test`: the robot's programs, units that compute, one boot of the virtual robot, and
+# armhf's zoned for the comparison of decisions. All packages and units are left to `cross`, all boots to `system`.
 test_cross() {
   local units=(pack_format zones odometry)
-  cross_build arm64 installed "${units[@]/#/test_}"
+  cross_build arm64 zoned zonectl "${units[@]/#/test_}"
   stage "tests: arm64 units of the robot under qemu-user"
   ctest --preset arm64 -j "$(nproc)" -R "^($(IFS='|' && echo "${units[*]}"))/"
-  make_packages
+  make_packages runtime
   set_flavour arm64
   make_guest
   stage "system tests: on the virtual robot, arm64"
-  run_guest_tests
+  run_guest_tests drive_test bus_faults_test check_test
   cross_build armhf zoned
 }
 
-make_packages() {  # of $arch, built
+make_packages() {  # [runtime]: of $arch, built
   stage "packages: Debian $arch"
-  toolchains/cross/packages.sh "$arch"
-  tests/system/debs_test.sh "build/$arch" "$sysroot"
+  toolchains/cross/packages.sh "$arch" "$@"
+  tests/system/debs_test.sh "build/$arch" "$sysroot" "$@"
 }
 
 # A program that runs build/ARCH/bin/PROGRAM under qemu-user.

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # usage: boot.sh FLAVOUR PAYLOAD OPTION...: boots the guest of guest.sh with the folder PAYLOAD as /payload, on this
-# terminal, and exits with the status of PAYLOAD/start; 124 after TIMEOUT seconds (300), 125 without a status. The
+# terminal, and exits with the status of PAYLOAD/start; 124 after TIMEOUT seconds (600), 125 without a status. The
 # power is cut when the guest's console says POWER-CUT, and it boots again. OPTIONS:
 #   virtual-time     the guest's clock counts instructions: sleeping takes no time, a slow host changes nothing
 #   controllers      can0 and can1: two classic controllers (SJA1000) on one bus
 #   controllers-fd   the same with CAN FD (CTU CAN FD)
 #   disk             an ext4 file system of 64 MiB at /data, empty at the first boot
 #   CONSOLE=FILE in the environment: the console's text goes there too
+#   OUT=FOLDER in the environment: what lies in /data/out at the end goes there
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 . toolchains/cross/debian.sh
@@ -40,7 +41,7 @@ ln -s "$(realpath "$payload")" "$work/root/payload"
 # The kernel unpacks archives one over the other.
 cp "build/robot/$flavour/base.cpio.gz" "$work/initrd"
 (cd "$work/root" && find -L payload | cpio -o -L -H newc -R 0:0 --quiet | gzip -1) >>"$work/initrd"
-limit=(timeout --foreground -k 5 "${TIMEOUT:-300}")
+limit=(timeout --foreground -k 5 "${TIMEOUT:-600}")
 if [ "${TIMEOUT:-}" = none ]; then limit=(); fi
 power_cut() { grep -qs POWER-CUT "$work/console"; }
 cut_when_told() {
@@ -66,5 +67,10 @@ while
   kill $watcher 2>/dev/null
   power_cut
 do :; done
-((status != 124)) || { echo "the guest took more than ${TIMEOUT:-300} s" >&2; exit 124; }
+if [ -n "${OUT:-}" ] && [ -e "$work/disk" ]; then
+  e2fsck -p "$work/disk" >/dev/null 2>&1 || true  # what was written last is in the journal
+  debugfs -R "rdump /out $work" "$work/disk" 2>/dev/null
+  if [ -d "$work/out" ]; then cp "$work"/out/* "$OUT/"; fi
+fi
+((status != 124)) || { echo "the guest took more than ${TIMEOUT:-600} s" >&2; exit 124; }
 exit "$(tr -d '\r' <"$work/console" | sed -n 's/.*GUEST-EXIT:\([0-9]*\):.*/\1/p' | tail -1 | grep . || echo 125)"

@@ -21,19 +21,28 @@ make_guest() {
   cp tests/system/guest/*.sh "$payload/tests/"
   cp -r tests/data/scenario1_loop "$payload/data/"
   local host=build/ci/bin
-  "$host/zonepack" build --db tests/data/hospital-small.db --zones tests/data/zones.geojson --out "$payload/map" \
-    >/dev/null 2>&1
+  build_map() {  # FOLDER PAYLOAD
+    "$host/zonepack" build --db tests/data/hospital-small.db --zones tests/data/zones.geojson --out "$payload/$1" \
+      --payload "$2" >/dev/null 2>&1
+  }
+  build_map map features,scan,grid
+  build_map map2 features,scan  # another version of it
+  "$host/zonepack" plan "$payload/map" --json - 2>/dev/null | jq .smallest_budget_bytes >"$payload/budget"
   "$host/zoned" replay --config config/agilex.yaml --map "$payload/map" --can $data/can0.log \
     --corrections $data/corrections.txt --truth $data/base_groundtruth.txt --max-signatures 50 \
     --events "$payload/events.jsonl" >/dev/null
 }
 
-# Each test once, those with the same boot options together; prints a line for each.
+options_of() { sed -n 's/^# boot: //p' "tests/system/guest/$1.sh"; }  # TEST
+
+# Each test once, those with the same boot options together; prints a line for each. Recordings made there are in
+# build/robot/FLAVOUR/recordings.
 run_guest_tests() {  # [TEST...], all by default
   local out=build/robot/$flavour boot failed=0
   local -a tests=("$@")
   ((${#tests[@]})) || mapfile -t tests < <(cd tests/system/guest && ls -- *_test.sh | sed 's/\.sh$//')
-  options_of() { sed -n 's/^# boot: //p' "tests/system/guest/$1.sh"; }
+  rm -rf "$out/recordings"
+  mkdir -p "$out/recordings"
   while read -r boot; do
     for test in "${tests[@]}"; do
       if [ "$(options_of "$test")" = "$boot" ]; then echo "$test"; fi
@@ -41,11 +50,11 @@ run_guest_tests() {  # [TEST...], all by default
     cp tests/system/guest/start "$out/payload/start"
     local console=$out/console-${boot// /-}.log status=0
     # shellcheck disable=SC2086
-    CONSOLE=$console toolchains/robot/boot.sh "$flavour" "$out/payload" $boot </dev/null >/dev/null || status=$?
+    CONSOLE=$console OUT=$out/recordings toolchains/robot/boot.sh "$flavour" "$out/payload" $boot </dev/null >/dev/null || status=$?
     tr -d '\r' <"$console" | sed -n '/^    /p; s/^TEST //p'
     local ran
     ran=$(grep -c '^TEST ' "$console" || true)
-    if ((status != 0)); then failed=1; fi
+    if ((status != 0)) || grep -q '^TEST FAILED' "$console"; then failed=1; fi
     if ((ran != $(wc -l <"$out/payload/group"))); then
       echo "the guest ended early (status $status); the end of $console:"
       tail -20 "$console"
@@ -68,6 +77,16 @@ do_system() {  # [arm64|armhf|rt-arm64 [TEST...]]
   prepare_robot "${1:-arm64}"
   stage "system tests: on the virtual robot, $flavour"
   run_guest_tests "${@:2}"
+  if (($# < 2)) || [[ " ${*:2} " == *" drive_test "* ]]; then replay_recordings "$arch"; fi
+}
+
+# What was recorded on the robot, replayed by the host's zoned and, under qemu-user, by those of ARCH.
+replay_recordings() {  # ARCH...
+  local -a zoneds=(build/ci/bin/zoned)
+  local other
+  for other in "$@"; do zoneds+=("$(emulated "$other" zoned)"); done
+  stage "recordings: made on the virtual robot, replayed by ${zoneds[*]}, with and without FMA"
+  tests/system/recordings_replayed_test.sh "build/robot/$flavour/recordings" "${zoneds[@]}"
 }
 
 do_robot() {  # [arm64|armhf|rt-arm64]

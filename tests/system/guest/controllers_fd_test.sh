@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-# boot: controllers-fd
-# Two CAN FD controllers (CTU CAN FD) with their own driver: frames arrive whole and in order.
+# boot: virtual-time controllers-fd
+# The same with two CAN FD controllers (CTU CAN FD): the drive comes in FD frames with a fast data phase.
 . /payload/tests/lib.sh
 for bus in can0 can1; do
   ip link set $bus type can bitrate 500000 dbitrate 2000000 fd on
   ip link set $bus txqueuelen 200 up
 done
 send_hundred "##1"
-echo "100 FD frames with a fast data phase"
+drive_between_controllers "#1"
+ip link set can0 down
+wait_for said "can0: down"
+stop_zoned
+echo "100 frames, then $frames of a drive to zoned; $entered zones entered as on the host"

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+# boot: virtual-time disk
 # The sample run replayed here gives the same event file as on the host, byte for byte.
 . /payload/tests/lib.sh
 replay_sample --events events.jsonl --json summary.json

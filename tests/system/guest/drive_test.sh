@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+# boot: virtual-time disk
+# Scenario 1 on the bus in its own time: zoned from its package, started as its unit does under memory.max = budget +
+# 16 MiB, is never without its zone, keeps within its budget, and enters the zones that the host's replay enters.
+. /payload/tests/lib.sh
+. /payload/tests/unit.sh
+budget=$(cat /payload/budget)
+vcan_up can0
+start_unit "$budget" --record /data/out/drive.zpr --events /data/out/drive.jsonl --json /data/out/drive.json
+started=$(centiseconds)
+drive "$run/can0.log" can0
+seconds=$((($(centiseconds) - started) / 100))
+[ $seconds -ge 109 ] && [ $seconds -le 113 ] || fail "110 s of driving took $seconds s"
+ask_status
+holds status.json map_ready true
+holds status.json budget_bytes "$budget"
+[ "$(zonectl zones | grep -c -E 'resident|absent|filling')" -ge 24 ] || fail "zonectl zones: $(zonectl zones)"
+stop_zoned
+result=/data/out/drive.json
+for key in zone_absent_s budget_violations minor_faults major_faults allocations missed_deadlines lost_events; do
+  holds $result $key 0
+done
+holds $result can_frames "$(odometers "$run/can0.log")"
+for what in max oom oom_kill; do
+  grep -q "^$what 0$" $group/memory.events || fail "memory.events: $(cat $group/memory.events)"
+done
+[ "$(stat -c %u /proc/self "$state/state-0" | tail -1)" = $user ] || fail "zoned did not run as an ordinary user"
+zones_entered /payload/events.jsonl >expected
+zones_entered /data/out/drive.jsonl | cmp - expected || fail "another route: $(zones_entered /data/out/drive.jsonl)"
+echo "$(wc -l <expected) zones entered, never without one; memory.peak $(cat $group/memory.peak) of" \
+  "$(cat $group/memory.max), worst wake-up $(worst $result wakeup_us) us, worst cycle $(worst $result cycle_us) us"
