@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # usage: boot.sh FLAVOUR PAYLOAD OPTION...: boots the guest of guest.sh with the folder PAYLOAD as /payload, on this
-# terminal, and exits with the status of PAYLOAD/start; 124 after TIMEOUT seconds (300), 125 without a status. The
+# terminal, and exits with the status of PAYLOAD/start; 124 after TIMEOUT seconds (600), 125 without a status. The
 # power is cut when the guest's console says POWER-CUT, and it boots again. OPTIONS:
 #   virtual-time     the guest's clock counts instructions: sleeping takes no time, a slow host changes nothing
 #   controllers      can0 and can1: two classic controllers (SJA1000) on one bus
@@ -41,7 +41,7 @@ ln -s "$(realpath "$payload")" "$work/root/payload"
 # The kernel unpacks archives one over the other.
 cp "build/robot/$flavour/base.cpio.gz" "$work/initrd"
 (cd "$work/root" && find -L payload | cpio -o -L -H newc -R 0:0 --quiet | gzip -1) >>"$work/initrd"
-limit=(timeout --foreground -k 5 "${TIMEOUT:-300}")
+limit=(timeout --foreground -k 5 "${TIMEOUT:-600}")
 if [ "${TIMEOUT:-}" = none ]; then limit=(); fi
 power_cut() { grep -qs POWER-CUT "$work/console"; }
 cut_when_told() {
@@ -72,5 +72,5 @@ if [ -n "${OUT:-}" ] && [ -e "$work/disk" ]; then
   debugfs -R "rdump /out $work" "$work/disk" 2>/dev/null
   if [ -d "$work/out" ]; then cp "$work"/out/* "$OUT/"; fi
 fi
-((status != 124)) || { echo "the guest took more than ${TIMEOUT:-300} s" >&2; exit 124; }
+((status != 124)) || { echo "the guest took more than ${TIMEOUT:-600} s" >&2; exit 124; }
 exit "$(tr -d '\r' <"$work/console" | sed -n 's/.*GUEST-EXIT:\([0-9]*\):.*/\1/p' | tail -1 | grep . || echo 125)"
