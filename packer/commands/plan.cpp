@@ -56,7 +56,7 @@ nlohmann::ordered_json to_json(const MapPlan& plan, const Arguments& arguments) 
   json["smallest_budget_bytes"] = plan.smallest.bytes;
   json["smallest_budget_slots"] = plan.smallest.slots;
   std::vector<ZoneId> pair;
-  for (const ZoneId zone : {plan.smallest.zone_a, plan.smallest.zone_b}) {
+  for (const ZoneId zone : {plan.smallest.pair.zone_a, plan.smallest.pair.zone_b}) {
     if (zone != kNoZone) pair.push_back(zone);
   }
   json["pair"] = names(plan, pair);
@@ -92,8 +92,7 @@ nlohmann::ordered_json to_json(const MapPlan& plan, const Arguments& arguments) 
 void print(const BudgetPlan& b, const MapPlan& plan, std::ostream& out) {
   out << "budget " << in_bytes(b.bytes) << ": " << b.slots << " slots\n";
   if (!b.suffices) {
-    out << "  BELOW THE SMALLEST by " << plan.smallest.bytes - b.bytes
-        << " bytes: the robot would "
+    out << "  BELOW THE SMALLEST by " << plan.smallest.bytes - b.bytes << " bytes: the robot would "
         << (b.zones_without_room.empty() ? "enter a zone before it is loaded\n"
                                          : "refuse to start\n");
   }
@@ -134,8 +133,8 @@ void print(const MapPlan& plan, std::ostream& out) {
   out << "\nloaded: core" << (payload.empty() ? "" : "," + payload) << "\nfixed "
       << in_bytes(plan.fixed_bytes) << "\nsmallest budget " << in_bytes(plan.smallest.bytes) << ", "
       << plan.smallest.slots << " slots, set by "
-      << pair_text(plan, plan.smallest.zone_a, plan.smallest.zone_b) << "\nto change maps live "
-      << in_bytes(plan.live_change_bytes) << "\n";
+      << pair_text(plan, plan.smallest.pair.zone_a, plan.smallest.pair.zone_b)
+      << "\nto change maps live " << in_bytes(plan.live_change_bytes) << "\n";
   if (plan.budget) print(*plan.budget, plan, out);
 }
 

@@ -32,14 +32,14 @@ std::runtime_error cannot_read(const std::string& path, const Error& error) {
                             "; 'zonepack verify' tells where it is damaged");
 }
 
-std::string payload_names(const fb::Manifest& manifest) {
-  const std::string list = payload_text(kDefaultPayload & manifest.payload_mask());
+std::string payload_names(PayloadMask payload) {
+  const std::string list = payload_text(payload);
   std::string names;
   for (const char c : list) names += c == ',' ? std::string(", ") : std::string(1, c);
   return names.empty() ? "poses only" : names;
 }
 
-report::PackedZone zone_of(const fb::Zone& zone, std::uint32_t slots) {
+report::PackedZone zone_of(const fb::Zone& zone, std::uint32_t slots, PayloadMask payload) {
   report::PackedZone out{.name = zone.name()->str(),
                          .zone_type = text_of(zone.zone_type()),
                          .label = text_of(zone.label()),
@@ -49,7 +49,7 @@ report::PackedZone zone_of(const fb::Zone& zone, std::uint32_t slots) {
                          .charged_bytes = slots * kSlotBytes,
                          .stored_bytes = 0,
                          .signature_positions = {}};
-  const PayloadMask loaded = payload_closure(kDefaultPayload, zone.grid_needs_scan());
+  const PayloadMask loaded = payload_closure(payload, zone.grid_needs_scan());
   for (const fb::PayloadBytes* bytes : *zone.payloads()) {
     const bool wanted = (loaded & mask_of(static_cast<fb::PayloadKind>(bytes->kind()))) != 0;
     if (wanted) out.stored_bytes += bytes->stored();
@@ -60,11 +60,11 @@ report::PackedZone zone_of(const fb::Zone& zone, std::uint32_t slots) {
   return out;
 }
 
-std::string pair_text(const fb::Manifest& manifest, const SmallestBudget& smallest) {
+std::string pair_text(const fb::Manifest& manifest, const LargestPair& pair) {
   const auto name = [&](ZoneId zone) { return manifest.zones()->Get(zone)->name()->str(); };
-  if (smallest.zone_a == kNoZone) return "no zone";
-  if (smallest.zone_b == kNoZone) return name(smallest.zone_a);
-  return name(smallest.zone_a) + " with " + name(smallest.zone_b);
+  if (pair.zone_a == kNoZone) return "no zone";
+  if (pair.zone_b == kNoZone) return name(pair.zone_a);
+  return name(pair.zone_a) + " with " + name(pair.zone_b);
 }
 
 std::string source_text(const fb::Provenance& source) {
@@ -78,7 +78,7 @@ std::string source_text(const fb::Provenance& source) {
 
 }  // namespace
 
-report::PackReport read_pack_report(const std::string& folder) {
+report::PackReport read_pack_report(const std::string& folder, PayloadMask payload) {
   const std::string path = folder + "/" + std::string(kManifestName);
   const Result<std::vector<std::byte>> file =
       read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail));
@@ -87,20 +87,20 @@ report::PackReport read_pack_report(const std::string& folder) {
   if (!checked) throw cannot_read(path, checked.error());
   const fb::Manifest& manifest = **checked;
 
-  const MapCosts costs = map_costs(manifest, kDefaultPayload);
-  const SmallestBudget smallest = smallest_budget(manifest, costs, {});
+  const MapCosts costs = map_costs(manifest, payload);
+  const SmallestBudget smallest = smallest_budget(costs, {});
   report::PackReport map;
   map.map = folder;
   map.version = to_hex(manifest_digest(*file));
-  map.payload = payload_names(manifest);
+  map.payload = payload_names(payload & manifest.payload_mask());
   map.source = source_text(*manifest.provenance());
   const std::uint64_t slots =
       std::accumulate(costs.zone_slots.begin(), costs.zone_slots.end(), std::uint64_t{0});
   map.table_bytes = charged_with(costs.fixed_bytes, slots) - slots * kSlotBytes;
   map.smallest_budget_bytes = smallest.bytes;
-  map.smallest_budget_pair = pair_text(manifest, smallest);
+  map.smallest_budget_pair = pair_text(manifest, smallest.pair);
   for (flatbuffers::uoffset_t i = 0; i < manifest.zones()->size(); ++i) {
-    map.zones.push_back(zone_of(*manifest.zones()->Get(i), costs.zone_slots[i]));
+    map.zones.push_back(zone_of(*manifest.zones()->Get(i), costs.zone_slots[i], payload));
   }
   if (manifest.portals() == nullptr) return map;
   for (const fb::Portal* portal : *manifest.portals()) {
@@ -113,6 +113,7 @@ report::PackReport read_pack_report(const std::string& folder) {
 void add_report_command(CLI::App& app, int& exit_code) {
   struct Options {
     std::string folder, out;
+    PayloadMask payload = kDefaultPayload;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
@@ -123,8 +124,11 @@ void add_report_command(CLI::App& app, int& exit_code) {
       ->check([](const std::string& path) {
         return report::fault_of_report_name(path).value_or(std::string());
       });
+  add_payload_option(*command, "--payload", options->payload,
+                     "what to count beside the core; default features,scan,grid");
   command->callback([options, &exit_code] {
-    const report::Report page = report::make_pack_report(read_pack_report(options->folder));
+    const report::Report page =
+        report::make_pack_report(read_pack_report(options->folder, options->payload));
     if (const auto problem = report::write_report(options->out, page)) {
       throw std::runtime_error(*problem);
     }

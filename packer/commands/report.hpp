@@ -4,14 +4,17 @@
 #include <CLI/App.hpp>
 #include <string>
 
+#include "runtime/pack_format/chunk_view.hpp"
 #include "runtime/report/pack_report.hpp"
 
 namespace zonepack::packer {
 
-// Reads the manifest of a packed map for drawing. Throws with a complete message.
-report::PackReport read_pack_report(const std::string& folder);
+// Reads the manifest of a packed map for drawing; bytes are those of `payload`, of which kinds that
+// the map does not hold are left out. Throws with a complete message.
+report::PackReport read_pack_report(const std::string& folder,
+                                    PayloadMask payload = kDefaultPayload);
 
-// `zonepack report DIR --out FILE.html|.png|.svg`; sets exit_code when it ran.
+// `zonepack report DIR --out FILE.html|.png|.svg [--payload LIST]`; sets exit_code when it ran.
 void add_report_command(CLI::App& app, int& exit_code);
 
 }  // namespace zonepack::packer

@@ -17,16 +17,14 @@ ByteCount stored_bytes(const fb::Zone& zone, PayloadMask payload) {
   return sum;
 }
 
-std::set<ZonePair> neighbours(const fb::Manifest& manifest) {
+// Each pair once, however many portals join it.
+std::set<ZonePair> pairs_of(const MapCosts& costs) {
   std::set<ZonePair> pairs;
-  if (manifest.portals() == nullptr) return pairs;
-  for (const fb::Portal* portal : *manifest.portals()) {
-    pairs.insert(std::minmax(portal->zone_a(), portal->zone_b()));
-  }
+  for (const auto& [a, b] : costs.neighbours) pairs.insert(std::minmax(a, b));
   return pairs;
 }
 
-BudgetPlan plan_budget(const fb::Manifest& manifest, const MapPlan& plan, ByteCount bytes) {
+BudgetPlan plan_budget(const MapCosts& costs, const MapPlan& plan, ByteCount bytes) {
   BudgetPlan budget;
   budget.bytes = bytes;
   budget.suffices = bytes >= plan.smallest.bytes;
@@ -49,7 +47,7 @@ BudgetPlan plan_budget(const fb::Manifest& manifest, const MapPlan& plan, ByteCo
   for (ZoneId zone = 0; zone < plan.zones.size(); ++zone) {
     if (!fits(beside_pins(zone))) budget.zones_without_room.push_back(zone);
   }
-  for (const auto& [a, b] : neighbours(manifest)) {
+  for (const auto& [a, b] : pairs_of(costs)) {
     const bool alone = fits(beside_pins(a)) && fits(beside_pins(b));
     if (alone && !fits(beside_pins(a) + beside_pins(b)))
       budget.pairs_without_room.push_back({a, b});
@@ -74,7 +72,7 @@ MapPlan plan_map(const fb::Manifest& manifest, PayloadMask payload, std::span<co
   MapPlan plan;
   plan.payload = payload;
   plan.fixed_bytes = costs.fixed_bytes;
-  plan.smallest = smallest_budget(manifest, costs, pinned);
+  plan.smallest = smallest_budget(costs, pinned);
   std::uint64_t largest = 0;
   for (ZoneId id = 0; id < manifest.zones()->size(); ++id) {
     const fb::Zone& zone = *manifest.zones()->Get(id);
@@ -85,7 +83,7 @@ MapPlan plan_map(const fb::Manifest& manifest, PayloadMask payload, std::span<co
     largest = std::max<std::uint64_t>(largest, slots);
   }
   plan.live_change_bytes = plan.smallest.bytes + charged_with(plan.fixed_bytes, largest);
-  if (budget) plan.budget = plan_budget(manifest, plan, *budget);
+  if (budget) plan.budget = plan_budget(costs, plan, *budget);
   return plan;
 }
 

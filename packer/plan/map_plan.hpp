@@ -4,7 +4,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "runtime/pack_format/accounting.hpp"
@@ -19,8 +18,6 @@ struct PlanZone {
   ByteCount stored_bytes = 0;   // read for the payload
   bool pinned = false;
 };
-
-using ZonePair = std::pair<ZoneId, ZoneId>;
 
 // What one budget allows, with the pinned zones always held.
 struct BudgetPlan {

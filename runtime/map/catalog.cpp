@@ -34,7 +34,6 @@ Result<Catalog> Catalog::read(ByteSpan file, const std::string& folder, PayloadM
   catalog.payload = payload;
   const MapCosts costs = map_costs(manifest, payload);
   catalog.fixed_bytes = costs.fixed_bytes;
-  catalog.smallest = smallest_budget(manifest, costs, {});
   catalog.zones.reserve(manifest.zones()->size());
   for (const fb::Zone* zone : *manifest.zones()) {
     CatalogZone& entry = catalog.zones.emplace_back();
@@ -64,6 +63,16 @@ Result<Catalog> Catalog::read(ByteSpan file, const std::string& folder, PayloadM
     }
   }
   return catalog;
+}
+
+MapCosts Catalog::costs() const {
+  MapCosts costs;
+  costs.fixed_bytes = fixed_bytes;
+  for (const CatalogZone& zone : zones) costs.zone_slots.push_back(zone.slots);
+  for (const CatalogPortal& portal : portals) {
+    costs.neighbours.emplace_back(portal.zone_a, portal.zone_b);
+  }
+  return costs;
 }
 
 ZoneId Catalog::find(std::string_view name) const noexcept {

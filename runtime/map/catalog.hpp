@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,12 +43,17 @@ struct Catalog {
   std::vector<CatalogZone> zones;
   std::vector<CatalogPortal> portals;
   ByteCount fixed_bytes = 0;  // charged beside slots (accounting.hpp)
-  SmallestBudget smallest;    // without pins
 
   // Reads FOLDER/manifest.zpm and checks it whole. kNotFound, kIo and what check_manifest says.
   static Result<Catalog> open(const std::string& folder, PayloadMask payload);
   // The same from the manifest's bytes, which must be aligned to 8; the folder may be gone.
   static Result<Catalog> read(ByteSpan manifest, const std::string& folder, PayloadMask payload);
+
+  // As map_costs() says of the manifest.
+  MapCosts costs() const;
+  SmallestBudget smallest(std::span<const ZoneId> pinned = {}) const {
+    return smallest_budget(costs(), pinned);
+  }
 
   // kNoZone for a name that is not there.
   ZoneId find(std::string_view name) const noexcept;

@@ -30,6 +30,15 @@ std::uint64_t chunks_of(const fb::Zone& zone) {
   return count;
 }
 
+// By ZoneId; ids beyond the last zone mark nothing.
+std::vector<bool> marked(std::span<const ZoneId> zones, std::size_t count) {
+  std::vector<bool> marks(count, false);
+  for (const ZoneId zone : zones) {
+    if (zone < count) marks[zone] = true;
+  }
+  return marks;
+}
+
 }  // namespace
 
 MapCosts map_costs(const fb::Manifest& manifest, PayloadMask wanted) {
@@ -42,45 +51,43 @@ MapCosts map_costs(const fb::Manifest& manifest, PayloadMask wanted) {
     most_chunks = std::max(most_chunks, chunks_of(*zone));
   }
   if (manifest.portals() != nullptr) {
-    for (const fb::Portal* portal : *manifest.portals()) tables += table_bytes(*portal);
+    for (const fb::Portal* portal : *manifest.portals()) {
+      tables += table_bytes(*portal);
+      costs.neighbours.emplace_back(portal->zone_a(), portal->zone_b());
+    }
   }
   costs.fixed_bytes =
       tables + kReadBufferBytes + kIndexBytesPerPack + most_chunks * kIndexBytesPerChunk;
   return costs;
 }
 
-SmallestBudget smallest_budget(const fb::Manifest& manifest, const MapCosts& costs,
-                               std::span<const ZoneId> pinned) {
-  const std::vector<std::uint32_t>& slots = costs.zone_slots;
-  std::vector<bool> is_pinned(slots.size(), false);
-  std::uint64_t pinned_slots = 0;
-  for (const ZoneId zone : pinned) {
-    if (zone >= slots.size() || is_pinned[zone]) continue;
-    is_pinned[zone] = true;
-    pinned_slots += slots[zone];
-  }
+LargestPair largest_pair(std::span<const std::uint32_t> amounts,
+                         std::span<const ZonePair> neighbours, std::span<const ZoneId> pinned) {
+  const std::vector<bool> is_pinned = marked(pinned, amounts.size());
   const auto beside_pins = [&](ZoneId zone) {
-    return is_pinned[zone] ? std::uint64_t{0} : std::uint64_t{slots[zone]};
+    return is_pinned[zone] ? std::uint64_t{0} : std::uint64_t{amounts[zone]};
   };
+  LargestPair most;
+  for (ZoneId zone = 0; zone < amounts.size(); ++zone) {
+    if (most.zone_a == kNoZone || beside_pins(zone) > most.amount) {
+      most = {beside_pins(zone), zone, kNoZone};
+    }
+  }
+  for (const auto& [a, b] : neighbours) {
+    const std::uint64_t both = beside_pins(a) + beside_pins(b);
+    if (both > most.amount || (both == most.amount && most.zone_b == kNoZone)) most = {both, a, b};
+  }
+  return most;
+}
+
+SmallestBudget smallest_budget(const MapCosts& costs, std::span<const ZoneId> pinned) {
   SmallestBudget best;
-  std::uint64_t most = 0;
-  for (ZoneId zone = 0; zone < slots.size(); ++zone) {
-    if (best.zone_a == kNoZone || beside_pins(zone) > most) {
-      most = beside_pins(zone);
-      best.zone_a = zone;
-    }
+  best.pair = largest_pair(costs.zone_slots, costs.neighbours, pinned);
+  best.slots = best.pair.amount;
+  const std::vector<bool> is_pinned = marked(pinned, costs.zone_slots.size());
+  for (ZoneId zone = 0; zone < is_pinned.size(); ++zone) {
+    if (is_pinned[zone]) best.slots += costs.zone_slots[zone];
   }
-  if (manifest.portals() != nullptr) {
-    for (const fb::Portal* portal : *manifest.portals()) {
-      const std::uint64_t pair = beside_pins(portal->zone_a()) + beside_pins(portal->zone_b());
-      if (pair > most || (pair == most && best.zone_b == kNoZone)) {
-        most = pair;
-        best.zone_a = portal->zone_a();
-        best.zone_b = portal->zone_b();
-      }
-    }
-  }
-  best.slots = most + pinned_slots;
   best.bytes = charged_with(costs.fixed_bytes, best.slots);
   return best;
 }

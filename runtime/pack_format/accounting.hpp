@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
@@ -28,9 +29,12 @@ inline constexpr ByteCount kReadBufferBytes = 64 * kKiB;
 inline constexpr ByteCount kIndexBytesPerChunk = 96;  // its entry, and where it was loaded to
 inline constexpr ByteCount kIndexBytesPerPack = 512;
 
+using ZonePair = std::pair<ZoneId, ZoneId>;
+
 struct MapCosts {
   ByteCount fixed_bytes = 0;              // beside slots and their tables
   std::vector<std::uint32_t> zone_slots;  // by ZoneId, for the payload asked for
+  std::vector<ZonePair> neighbours;       // of every portal
 };
 
 // Costs of a checked manifest when these kinds are loaded.
@@ -46,16 +50,24 @@ constexpr std::uint64_t slots_within(ByteCount budget, ByteCount fixed_bytes) no
   return budget < fixed_bytes ? 0 : (budget - fixed_bytes) / (kSlotBytes + kTableBytesPerSlot);
 }
 
+// The zone and the neighbour that take most together beside the pinned zones, which are held
+// anyway; `amounts` are slots or signatures by ZoneId.
+struct LargestPair {
+  std::uint64_t amount = 0;
+  ZoneId zone_a = kNoZone;
+  ZoneId zone_b = kNoZone;  // kNoZone: the largest zone has no neighbour that matters
+};
+LargestPair largest_pair(std::span<const std::uint32_t> amounts,
+                         std::span<const ZonePair> neighbours, std::span<const ZoneId> pinned);
+
 struct SmallestBudget {
   ByteCount bytes = 0;
-  std::uint64_t slots = 0;
-  ZoneId zone_a = kNoZone;  // the zone and the neighbour that need most together
-  ZoneId zone_b = kNoZone;  // kNoZone: the largest zone has no neighbour that matters
+  std::uint64_t slots = 0;  // of the pair and of the pinned zones
+  LargestPair pair;
 };
 
 // The smallest budget under which every zone fits together with any one neighbour, all pinned
-// zones, tables and read buffers.
-SmallestBudget smallest_budget(const fb::Manifest& manifest, const MapCosts& costs,
-                               std::span<const ZoneId> pinned);
+// zones, tables and read buffers: the one place that says so, for plan and for the robot.
+SmallestBudget smallest_budget(const MapCosts& costs, std::span<const ZoneId> pinned);
 
 }  // namespace zonepack

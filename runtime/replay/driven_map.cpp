@@ -40,7 +40,7 @@ std::unique_ptr<DrivenMap> DrivenMap::make(const Catalog& catalog, const MapTerm
   ResidencyLimits limits = limits_for(catalog, terms.budget, terms.max_signatures, pinned);
   limits.lease_ns = terms.lease_ns;
   if (terms.slots) limits.most_slots = *terms.slots;
-  if (const auto refused = refusal(catalog, limits)) {
+  if (const auto refused = refusal(catalog, limits, pinned)) {
     fault = *refused;
     return nullptr;
   }
@@ -48,9 +48,10 @@ std::unique_ptr<DrivenMap> DrivenMap::make(const Catalog& catalog, const MapTerm
   std::vector<LoadWork> work = work_of(catalog);
   std::vector<float> load_s = load_times_of(work, terms.rates, terms.period_ns);
   const std::uint32_t slots = terms.slots.value_or(slots_to_reserve(needs, limits));
+  std::optional<std::string> warning = tightness(catalog, limits, pinned);
   return std::unique_ptr<DrivenMap>(
       new DrivenMap{catalog, std::move(pinned), limits, graph_of(catalog), std::move(needs),
-                    std::move(work), std::move(load_s), slots, tightness(catalog, limits)});
+                    std::move(work), std::move(load_s), slots, std::move(warning)});
 }
 
 MapTerms DrivenMap::terms_of_next(const MapTerms& terms) const {
@@ -65,7 +66,8 @@ bool DrivenMap::pin(Residency& memory, std::string& fault) const {
     if (memory.pin(zone, needs[zone])) continue;
     fault = "memory.pinned: zone " + graph.name(zone) +
             " does not fit beside the largest pair of neighbours in a budget of " +
-            format_byte_count(limits.budget) + "; pin less or allow more";
+            format_byte_count(limits.budget) +
+            "; pin less, or allow more: " + smallest_budget_text(catalog, pinned);
     return false;
   }
   return true;

@@ -8,33 +8,14 @@
 namespace zonepack {
 namespace {
 
-constexpr ByteCount kChargedPerSlot = kSlotBytes + kTableBytesPerSlot;
-
 NeedSum pair_of(const CatalogZone& a, const CatalogZone& b) {
   return {std::uint64_t{a.slots} + b.slots, std::uint64_t{a.signatures} + b.signatures};
 }
 
-// The most slots and the most signatures that a zone with one neighbour takes beside the pinned
-// zones, which are held anyway; they may be different pairs.
-NeedSum largest_pair(const Catalog& catalog, const std::vector<ZoneId>& pinned) {
-  std::vector<ZoneNeed> needs = needs_of(catalog);
-  for (const ZoneId zone : pinned) needs[zone] = {};
-  NeedSum most;
-  const auto raise = [&](ZoneId a, ZoneId b) {
-    NeedSum pair;
-    pair.add(needs[a]);
-    if (b != a) pair.add(needs[b]);
-    most.slots = std::max(most.slots, pair.slots);
-    most.signatures = std::max(most.signatures, pair.signatures);
-  };
-  for (ZoneId zone = 0; zone < needs.size(); ++zone) raise(zone, zone);
-  for (const CatalogPortal& portal : catalog.portals) raise(portal.zone_a, portal.zone_b);
-  return most;
-}
-
-std::string remedy(const Catalog& catalog) {
-  return "the smallest budget for this map is " + format_byte_count(catalog.smallest.bytes) +
-         " (zonepack plan tells what sets it)";
+std::vector<std::uint32_t> signatures_of(const Catalog& catalog) {
+  std::vector<std::uint32_t> signatures;
+  for (const CatalogZone& zone : catalog.zones) signatures.push_back(zone.signatures);
+  return signatures;
 }
 
 }  // namespace
@@ -77,24 +58,33 @@ std::vector<float> load_times_of(const std::vector<LoadWork>& work, const LoadRa
 
 ResidencyLimits limits_for(const Catalog& catalog, std::optional<ByteCount> budget,
                            std::uint64_t max_signatures, const std::vector<ZoneId>& pinned) {
-  const NeedSum pair = largest_pair(catalog, pinned);
-  ByteCount smallest = charged_with(catalog.fixed_bytes, pair.slots);
-  for (const ZoneId zone : pinned) smallest += catalog.zones[zone].slots * kChargedPerSlot;
-  ByteCount whole = catalog.fixed_bytes;
-  for (const CatalogZone& zone : catalog.zones) whole += zone.slots * kChargedPerSlot;
+  const MapCosts costs = catalog.costs();
+  const SmallestBudget smallest = smallest_budget(costs, pinned);
+  std::uint64_t all_slots = 0;
+  for (const std::uint32_t slots : costs.zone_slots) all_slots += slots;
   ResidencyLimits limits;
-  limits.budget = budget.value_or(max_signatures > 0 ? whole : smallest);
+  limits.budget = budget.value_or(max_signatures > 0 ? charged_with(catalog.fixed_bytes, all_slots)
+                                                     : smallest.bytes);
   limits.fixed = catalog.fixed_bytes;
-  limits.slot_bytes = kChargedPerSlot;
+  limits.slot_bytes = kSlotBytes + kTableBytesPerSlot;
   limits.max_signatures = max_signatures;
-  limits.largest_pair = pair;
+  // They may be different pairs.
+  limits.largest_pair = {smallest.pair.amount,
+                         largest_pair(signatures_of(catalog), costs.neighbours, pinned).amount};
   return limits;
 }
 
-std::optional<std::string> refusal(const Catalog& catalog, const ResidencyLimits& limits) {
+std::string smallest_budget_text(const Catalog& catalog, const std::vector<ZoneId>& pinned) {
+  return "the smallest budget for this map" + std::string(pinned.empty() ? "" : " and its pins") +
+         " is " + format_byte_count(catalog.smallest(pinned).bytes) +
+         " (zonepack plan tells what sets it)";
+}
+
+std::optional<std::string> refusal(const Catalog& catalog, const ResidencyLimits& limits,
+                                   const std::vector<ZoneId>& pinned) {
   if (limits.fixed > limits.budget) {
     return "budget " + format_byte_count(limits.budget) + ": tables and read buffers alone take " +
-           std::to_string(limits.fixed) + " bytes; " + remedy(catalog);
+           std::to_string(limits.fixed) + " bytes; " + smallest_budget_text(catalog, pinned);
   }
   if (catalog.zones.empty()) return std::nullopt;
   const std::uint64_t slots =
@@ -105,7 +95,7 @@ std::optional<std::string> refusal(const Catalog& catalog, const ResidencyLimits
     return "zone " + widest.name + " takes " + std::to_string(widest.slots * limits.slot_bytes) +
            " bytes beside " + std::to_string(limits.fixed) +
            " for tables and buffers, over the budget of " + format_byte_count(limits.budget) +
-           "; " + remedy(catalog);
+           "; " + smallest_budget_text(catalog, pinned);
   }
   if (widest.slots > place) {
     return "zone " + widest.name + " takes " + std::to_string(widest.slots) + " slots of " +
@@ -123,7 +113,8 @@ std::optional<std::string> refusal(const Catalog& catalog, const ResidencyLimits
   return std::nullopt;
 }
 
-std::optional<std::string> tightness(const Catalog& catalog, const ResidencyLimits& limits) {
+std::optional<std::string> tightness(const Catalog& catalog, const ResidencyLimits& limits,
+                                     const std::vector<ZoneId>& pinned) {
   const auto slots = std::min<std::uint64_t>(
       Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes), limits.most_slots);
   for (const CatalogPortal& portal : catalog.portals) {
@@ -132,7 +123,8 @@ std::optional<std::string> tightness(const Catalog& catalog, const ResidencyLimi
     const std::string both = "zones " + a.name + " and " + b.name + " do not fit together";
     if (pair.slots > slots) {
       return both + " in " + format_byte_count(limits.budget) +
-             ": the robot will enter one before it is loaded; " + remedy(catalog);
+             ": the robot will enter one before it is loaded; " +
+             smallest_budget_text(catalog, pinned);
     }
     if (limits.max_signatures > 0 && pair.signatures > limits.max_signatures) {
       return both + " in " + std::to_string(limits.max_signatures) +

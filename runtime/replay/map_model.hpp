@@ -31,7 +31,12 @@ ResidencyLimits limits_for(const Catalog& catalog, std::optional<ByteCount> budg
 // Why the map cannot be driven within these limits: complete messages that name the zone and the
 // smallest budget that would do. A zone that fits, but not together with its neighbours, is a
 // warning: the robot will wait at that door.
-std::optional<std::string> refusal(const Catalog& catalog, const ResidencyLimits& limits);
-std::optional<std::string> tightness(const Catalog& catalog, const ResidencyLimits& limits);
+std::optional<std::string> refusal(const Catalog& catalog, const ResidencyLimits& limits,
+                                   const std::vector<ZoneId>& pinned);
+std::optional<std::string> tightness(const Catalog& catalog, const ResidencyLimits& limits,
+                                     const std::vector<ZoneId>& pinned);
+
+// What to do about a budget that is too small, as a clause.
+std::string smallest_budget_text(const Catalog& catalog, const std::vector<ZoneId>& pinned);
 
 }  // namespace zonepack

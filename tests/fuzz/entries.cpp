@@ -212,7 +212,7 @@ bool read_manifest(ByteSpan bytes) {
   for (const PayloadMask wanted : {kCoreOnly, kDefaultPayload, kEveryPayload}) {
     const MapCosts costs = map_costs(manifest, wanted);
     const ZoneId pinned[] = {0, 1};
-    sink = smallest_budget(manifest, costs, pinned).bytes;
+    sink = smallest_budget(costs, pinned).bytes;
   }
   for (const fb::Zone* zone : *manifest.zones()) {
     const Polygon polygon = polygon_of(*zone);

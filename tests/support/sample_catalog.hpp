@@ -39,14 +39,8 @@ inline Catalog sample_catalog(const std::string& zones_file, std::uint32_t times
   }
   for (const GraphPortal& portal : building.portals) {
     catalog.portals.push_back({"", portal.zone_a, portal.zone_b, portal.segment});
-    const std::uint64_t pair =
-        catalog.zones[portal.zone_a].slots + catalog.zones[portal.zone_b].slots;
-    if (pair > catalog.smallest.slots) {
-      catalog.smallest = {0, pair, portal.zone_a, portal.zone_b};
-    }
   }
   catalog.fixed_bytes = 100'000;
-  catalog.smallest.bytes = charged_with(catalog.fixed_bytes, catalog.smallest.slots);
   return catalog;
 }
 

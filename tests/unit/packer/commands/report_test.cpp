@@ -10,6 +10,8 @@
 #include <sstream>
 
 #include "packer/build/map_builder.hpp"
+#include "packer/decode/map_reader.hpp"
+#include "packer/plan/map_plan.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace zonepack::packer {
@@ -66,6 +68,26 @@ TEST_F(ReportCommandTest, CountsWhatTheBuildCounted) {
   EXPECT_EQ(features, built_.features);
   EXPECT_EQ(read.smallest_budget_bytes, built_.smallest.bytes);
   EXPECT_EQ(read.payload, "features, scan, grid");
+}
+
+TEST_F(ReportCommandTest, CountsThePayloadAskedForAsPlanDoes) {
+  const MapReader built(map());
+  // Images were not packed: they are left out.
+  for (const PayloadMask payload : {kCoreOnly, kCoreOnly | mask_of(fb::PayloadKind::Features),
+                                    kDefaultPayload | mask_of(fb::PayloadKind::Image)}) {
+    const report::PackReport read = read_pack_report(map(), payload);
+    const MapPlan plan =
+        plan_map(built.manifest(), payload & built.manifest().payload_mask(), {}, std::nullopt);
+    EXPECT_EQ(read.smallest_budget_bytes, plan.smallest.bytes);
+    ASSERT_EQ(read.zones.size(), plan.zones.size());
+    for (std::size_t i = 0; i < read.zones.size(); ++i) {
+      EXPECT_EQ(read.zones[i].charged_bytes, plan.zones[i].charged_bytes) << read.zones[i].name;
+      EXPECT_EQ(read.zones[i].stored_bytes, plan.zones[i].stored_bytes) << read.zones[i].name;
+    }
+  }
+  EXPECT_EQ(read_pack_report(map(), kCoreOnly).payload, "poses only");
+  EXPECT_LT(read_pack_report(map(), kCoreOnly).zones[0].charged_bytes,
+            read_pack_report(map()).zones[0].charged_bytes);
 }
 
 TEST_F(ReportCommandTest, KnowsWhereEverySignatureStands) {

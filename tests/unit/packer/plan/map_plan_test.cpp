@@ -78,8 +78,8 @@ TEST(MapPlan, TakesTheLargestPairOfNeighbours) {
   const MapPlan plan = plan_map(map.manifest(), kFeatures, {}, std::nullopt);
   // A-B 4 + 3, B-C 3 + 5, C-D 5 + 1. A and C, 9 slots, are no neighbours.
   EXPECT_EQ(plan.smallest.slots, 8u);
-  EXPECT_EQ(plan.smallest.zone_a, kB);
-  EXPECT_EQ(plan.smallest.zone_b, kC);
+  EXPECT_EQ(plan.smallest.pair.zone_a, kB);
+  EXPECT_EQ(plan.smallest.pair.zone_b, kC);
   EXPECT_EQ(plan.smallest.bytes, plan.fixed_bytes + 8 * kSlot);
   EXPECT_EQ(plan.live_change_bytes, plan.smallest.bytes + plan.fixed_bytes + 5 * kSlot);
 }
@@ -90,8 +90,8 @@ TEST(MapPlan, HoldsPinnedZonesBesideEveryPair) {
   const MapPlan plan = plan_map(map.manifest(), kFeatures, pinned, std::nullopt);
   // B is held: A-B needs 4 more, B-C 5, C-D 6.
   EXPECT_EQ(plan.smallest.slots, 3u + 6u);
-  EXPECT_EQ(plan.smallest.zone_a, kC);
-  EXPECT_EQ(plan.smallest.zone_b, kD);
+  EXPECT_EQ(plan.smallest.pair.zone_a, kC);
+  EXPECT_EQ(plan.smallest.pair.zone_b, kD);
   EXPECT_TRUE(plan.zones[kB].pinned);
   EXPECT_FALSE(plan.zones[kA].pinned);
 }

@@ -46,7 +46,7 @@ class RecordedDrive {
     choices.storage_rate = 500'000;
     terms_ = map_terms(choices, run_.settings);
     terms_.lease_ns = 500'000'000;
-    terms_.budget = run_.catalog.smallest.bytes + 5 * kMiB / 2;
+    terms_.budget = run_.catalog.smallest().bytes + 5 * kMiB / 2;
   }
 
   const RecordedRun& run() const { return run_; }

@@ -74,8 +74,8 @@ TEST_F(Replay, KeepsTheSmallestBudgetOnADenseMapAlsoFromSlowStorage) {
       input.terms.rates.storage = rate;
     });
     ASSERT_TRUE(result) << fault;
-    EXPECT_EQ(result->summary.budget_bytes, catalog.smallest.bytes);
-    EXPECT_LE(result->summary.peak_charged_bytes, catalog.smallest.bytes);
+    EXPECT_EQ(result->summary.budget_bytes, catalog.smallest().bytes);
+    EXPECT_LE(result->summary.peak_charged_bytes, catalog.smallest().bytes);
     EXPECT_EQ(result->summary.budget_violations, 0u);
     EXPECT_EQ(result->summary.zone_absent_s, 0) << rate;
     EXPECT_TRUE(result->warnings.empty());
@@ -139,7 +139,7 @@ TEST_F(Replay, RefusesAZoneThatCannotFitByNameWithTheSmallestBudget) {
   // L1: 31 * 28000 = 868000 bytes, 53 slots.
   EXPECT_THAT(fault, HasSubstr("zone L1 takes 873440 bytes"));
   EXPECT_THAT(fault, HasSubstr("smallest budget for this map is " +
-                               std::to_string(catalog.smallest.bytes)));
+                               std::to_string(catalog.smallest().bytes)));
   EXPECT_FALSE(run([](ReplayInput& input) { input.terms.budget = 1000; }));
   EXPECT_THAT(fault, HasSubstr("tables and read buffers alone take 100000 bytes"));
   EXPECT_FALSE(run([](ReplayInput& input) { input.terms.max_signatures = 30; }));
@@ -171,6 +171,14 @@ TEST_F(Replay, KeepsPinnedZonesAndRefusesUnknownOnes) {
     input.terms.pinned = {"H1"};  // 16 + 49 > 60
   }));
   EXPECT_THAT(fault, HasSubstr("zone H1 does not fit beside the largest pair"));
+  const ZoneId r11[] = {catalog.find("R11")};
+  EXPECT_FALSE(run([&](ReplayInput& input) {
+    input.terms.budget = catalog.smallest().bytes;
+    input.terms.pinned = {"R11"};
+  }));
+  EXPECT_THAT(fault, HasSubstr("the smallest budget for this map and its pins is " +
+                               std::to_string(catalog.smallest(r11).bytes)));
+  EXPECT_TRUE(run([](ReplayInput& input) { input.terms.pinned = {"R11"}; })) << fault;
 }
 
 TEST_F(Replay, TracksWithoutTruthToo) {
