@@ -12,6 +12,7 @@
 
 #include "tests/support/blob_writer.hpp"
 #include "tests/support/rtabmap_fixture_schema.hpp"
+#include "tests/support/sqlite_insert.hpp"
 
 namespace zonepack::test_support {
 namespace {
@@ -20,91 +21,6 @@ using packer::Bytes;
 using packer::Matrix;
 using packer::SignatureRecord;
 using packer::Transform;
-
-class Database {
- public:
-  explicit Database(const std::filesystem::path& path) {
-    sqlite3* handle = nullptr;
-    const int code = sqlite3_open(path.c_str(), &handle);
-    handle_.reset(handle, sqlite3_close_v2);
-    if (code != SQLITE_OK) throw std::runtime_error("cannot write " + path.string());
-  }
-  void run(const std::string& sql) {
-    if (sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) {
-      throw std::runtime_error(sqlite3_errmsg(handle_.get()) + (": " + sql));
-    }
-  }
-  sqlite3* handle() { return handle_.get(); }
-
- private:
-  std::shared_ptr<sqlite3> handle_;
-};
-
-// An INSERT whose columns are named one by one; each value is bound as it comes.
-class Insert {
- public:
-  Insert(Database& database, std::string table) : database_(database), table_(std::move(table)) {}
-
-  Insert& integer(const char* column, std::int64_t value) {
-    return add(column, [=](sqlite3_stmt* s, int i) { return sqlite3_bind_int64(s, i, value); });
-  }
-  // NaN becomes NULL, as SQLite itself makes it.
-  Insert& real(const char* column, double value) {
-    return add(column, [=](sqlite3_stmt* s, int i) { return sqlite3_bind_double(s, i, value); });
-  }
-  Insert& text(const char* column, const std::string& value) {
-    if (value.empty()) return *this;
-    return add(column, [=](sqlite3_stmt* s, int i) {
-      return sqlite3_bind_text(s, i, value.data(), static_cast<int>(value.size()),
-                               SQLITE_TRANSIENT);
-    });
-  }
-  Insert& blob(const char* column, const Bytes& value) {
-    if (value.empty()) return *this;
-    return add(column, [=](sqlite3_stmt* s, int i) {
-      return sqlite3_bind_blob(s, i, value.data(), static_cast<int>(value.size()),
-                               SQLITE_TRANSIENT);
-    });
-  }
-  Insert& matrix(const char* column, const std::optional<Matrix>& value) {
-    return value ? blob(column, zip(*value)) : *this;
-  }
-  Insert& transform(const char* column, const std::optional<Transform>& value) {
-    return value ? blob(column, bytes_of(std::span<const float>(*value))) : *this;
-  }
-
-  void run() {
-    std::string names, marks;
-    for (const auto& [column, bind] : values_) {
-      names += (names.empty() ? "" : ",") + column;
-      marks += marks.empty() ? "?" : ",?";
-    }
-    const std::string sql = "INSERT INTO " + table_ + "(" + names + ") VALUES(" + marks + ")";
-    sqlite3_stmt* statement = nullptr;
-    if (sqlite3_prepare_v2(database_.handle(), sql.c_str(), -1, &statement, nullptr) != SQLITE_OK) {
-      throw std::runtime_error(sqlite3_errmsg(database_.handle()) + (": " + sql));
-    }
-    int index = 0;
-    for (const auto& [column, bind] : values_) bind(statement, ++index);
-    const int code = sqlite3_step(statement);
-    sqlite3_finalize(statement);
-    if (code != SQLITE_DONE) {
-      throw std::runtime_error(sqlite3_errmsg(database_.handle()) + (": " + sql));
-    }
-    values_.clear();
-  }
-
- private:
-  using Bind = std::function<int(sqlite3_stmt*, int)>;
-  Insert& add(const char* column, Bind bind) {
-    values_.emplace_back(column, std::move(bind));
-    return *this;
-  }
-
-  Database& database_;
-  std::string table_;
-  std::vector<std::pair<std::string, Bind>> values_;
-};
 
 Bytes scan_info(const packer::Scan& scan, const FixtureSchema& schema) {
   std::vector<float> values;
@@ -126,7 +42,7 @@ Bytes scan_info(const packer::Scan& scan, const FixtureSchema& schema) {
   return says_nothing ? Bytes() : bytes_of(values);
 }
 
-void write_node(Database& database, const SignatureRecord& r) {
+void write_node(WrittenDatabase& database, const SignatureRecord& r) {
   Insert(database, "Node")
       .integer("id", r.id)
       .integer("map_id", r.map_id)
@@ -141,7 +57,7 @@ void write_node(Database& database, const SignatureRecord& r) {
       .run();
 }
 
-void write_data(Database& database, const FixtureSchema& schema, const SignatureRecord& r) {
+void write_data(WrittenDatabase& database, const FixtureSchema& schema, const SignatureRecord& r) {
   Insert row(database, "Data");
   row.integer("id", r.id)
       .blob("image", r.image)
@@ -169,7 +85,8 @@ void write_data(Database& database, const FixtureSchema& schema, const Signature
   row.run();
 }
 
-void write_features(Database& database, const FixtureSchema& schema, const SignatureRecord& r) {
+void write_features(WrittenDatabase& database, const FixtureSchema& schema,
+                    const SignatureRecord& r) {
   const packer::Features& f = r.features;
   const std::size_t stride = f.count == 0 ? 0 : f.descriptors.size() / f.count;
   Insert row(database, schema.feature_table());
@@ -194,7 +111,7 @@ void write_features(Database& database, const FixtureSchema& schema, const Signa
   }
 }
 
-void write_links(Database& database, const FixtureSchema& schema, const SignatureRecord& r) {
+void write_links(WrittenDatabase& database, const FixtureSchema& schema, const SignatureRecord& r) {
   Insert row(database, "Link");
   // Last link first: a reader must not count on the order of rows.
   for (auto at = r.links.rbegin(); at != r.links.rend(); ++at) {
@@ -214,7 +131,7 @@ void write_links(Database& database, const FixtureSchema& schema, const Signatur
   }
 }
 
-void write_optimised_poses(Database& database, const RtabmapFixture& fixture) {
+void write_optimised_poses(WrittenDatabase& database, const RtabmapFixture& fixture) {
   std::map<std::int32_t, Transform> poses = fixture.extra_poses;
   for (const SignatureRecord& r : fixture.signatures) {
     if (r.pose) poses.emplace(r.id, *r.pose);
@@ -232,7 +149,7 @@ void write_optimised_poses(Database& database, const RtabmapFixture& fixture) {
   database.run("UPDATE Admin SET opt_ids=(SELECT b FROM ids), opt_poses=(SELECT b FROM poses)");
 }
 
-void write_optimised_map(Database& database, const FixtureSchema& schema,
+void write_optimised_map(WrittenDatabase& database, const FixtureSchema& schema,
                          const packer::OptimisedMap& map) {
   Insert(database, "map")
       .blob("b", zip(map.cells))
@@ -253,7 +170,7 @@ void write_optimised_map(Database& database, const FixtureSchema& schema,
 void write_rtabmap_database(const std::filesystem::path& path, const RtabmapFixture& fixture) {
   const FixtureSchema schema(fixture.version);
   std::filesystem::remove(path);
-  Database database(path);
+  WrittenDatabase database(path);
   database.run("PRAGMA synchronous=OFF; PRAGMA journal_mode=MEMORY; BEGIN;" +
                schema.create_statements() +
                "CREATE TEMP TABLE ids (b BLOB); CREATE TEMP TABLE poses (b BLOB);"
@@ -327,10 +244,12 @@ packer::SignatureRecord as_schema_holds(packer::SignatureRecord record,
   return record;
 }
 
-void execute(const std::filesystem::path& path, const std::string& sql) { Database(path).run(sql); }
+void execute(const std::filesystem::path& path, const std::string& sql) {
+  WrittenDatabase(path).run(sql);
+}
 
 void execute(const std::filesystem::path& path, const std::string& sql, const Bytes& blob) {
-  Database database(path);
+  WrittenDatabase database(path);
   sqlite3_stmt* statement = nullptr;
   sqlite3_prepare_v2(database.handle(), sql.c_str(), -1, &statement, nullptr);
   sqlite3_bind_blob(statement, 1, blob.data(), static_cast<int>(blob.size()), SQLITE_STATIC);

@@ -48,10 +48,20 @@ inline ZoneFile parse(const std::vector<std::string>& features, double snap_m = 
   return parse_zone_file(collection(features), snap_m);
 }
 
+// Two rooms side by side, sharing x = 4, y 0...3, and the door between them.
+inline const std::string kLeft = box("A", 0, 0, 4, 3);
+inline const std::string kRight = box("B", 4, 0, 8, 3);
+inline const std::string kDoor = portal("P1", "A", "B", "[[4,1],[4,2]]");
+
 inline std::vector<std::string> messages(const std::vector<Finding>& findings) {
   std::vector<std::string> texts;
   for (const Finding& finding : findings) texts.push_back(finding.message);
   return texts;
+}
+
+inline std::vector<std::string> faults_of(const std::vector<std::string>& features,
+                                          double snap_m = kDefaultSnap_m) {
+  return messages(parse(features, snap_m).findings.faults);
 }
 
 }  // namespace zonepack::packer
