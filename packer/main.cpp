@@ -20,7 +20,10 @@ int main(int argc, char** argv) {
       "Exit codes: 0 done, 1 the input or the world is bad, 2 usage.",
       "zonepack");
   app.set_version_flag("--version", ZONEPACK_VERSION);
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);  // so that CLI11 names a word it does not know
+  app.callback([&app] {
+    if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
+  });
   int exit_code = 0;
   zonepack::packer::add_build_command(app, exit_code);
   zonepack::packer::add_check_zones_command(app, exit_code);

@@ -90,7 +90,10 @@ int main(int argc, char** argv) {
       "Exit codes: 0 done, 1 zoned or the world said no, 2 usage.",
       "zonectl");
   app.set_version_flag("--version", ZONEPACK_VERSION);
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);  // so that CLI11 names a word it does not know
+  app.callback([&app] {
+    if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
+  });
   CtlArguments arguments;
   app.add_option("--socket", arguments.socket,
                  "zoned's socket; else $ZONED_SOCKET, --config, /run/zoned/zoned.sock")

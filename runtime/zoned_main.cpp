@@ -63,10 +63,13 @@ void add_choices(CLI::App& app, RunChoices& choices) {
                return choices.budget.has_value();
              });
   app.add_option("--max-signatures", choices.max_signatures,
-                 "most signatures in memory at once; 0: no limit");
+                 "most signatures in memory at once; 0: no limit")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1'000'000'000}))
+      ->type_name("N");
   app.add_option("--storage-rate", choices.storage_rate,
                  "bytes read per second, as preloading takes it to be")
-      ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{1'000'000'000'000}));
+      ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{1'000'000'000'000}))
+      ->type_name("BYTES_PER_S");
 }
 
 void add_replay(CLI::App& app, ReplayArguments& arguments, int& exit_code) {
@@ -142,7 +145,8 @@ void add_calibrate(CLI::App& app, zonepack::CalibrateArguments& arguments, int& 
       ->type_name("LOG")
       ->required();
   add_file(calibrate, "--truth", arguments.truth, "true poses: t x y z qx qy qz qw")->required();
-  add_file(calibrate, "--json", arguments.json, "write the result as JSON");
+  add_file(calibrate, "--json", arguments.json,
+           "write the result as JSON ('-': standard output, and text to standard error)");
   calibrate.callback([&] { exit_code = zonepack::run_calibrate(arguments); });
 }
 

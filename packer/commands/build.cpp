@@ -141,32 +141,25 @@ void add_build_command(CLI::App& app, int& exit_code) {
                      "default all");
   add_size_option(*command, "--max-zone-bytes", options.max_zone_bytes,
                   "split zones that would charge more into parts along their length");
-  command
-      ->add_option("--orphans", options.orphans,
-                   "signatures in no zone: nearest (default), drop or error")
-      ->transform(
-          CLI::Transformer(std::map<std::string, OrphanPolicy>{{"nearest", OrphanPolicy::kNearest},
-                                                               {"drop", OrphanPolicy::kDrop},
-                                                               {"error", OrphanPolicy::kError}}))
-      ->type_name("POLICY");
+  add_choice_option<OrphanPolicy>(*command, "--orphans", options.orphans,
+                                  {{"nearest", OrphanPolicy::kNearest},
+                                   {"drop", OrphanPolicy::kDrop},
+                                   {"error", OrphanPolicy::kError}},
+                                  "signatures in no zone: nearest (default), drop or error");
   command->add_option("--snap", options.snap_m, "how far portal ends may stand off a border")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0))
       ->type_name("METRES");
-  command
-      ->add_option("--unlinked", options.unlinked,
-                   "signatures without an optimised pose: odometry (default), drop or error")
-      ->transform(CLI::Transformer(
-          std::map<std::string, UnlinkedPolicy>{{"odometry", UnlinkedPolicy::kOdometry},
-                                                {"drop", UnlinkedPolicy::kDrop},
-                                                {"error", UnlinkedPolicy::kError}}))
-      ->type_name("POLICY");
-  command
-      ->add_option("--damaged", options.damaged,
-                   "signatures that cannot be read whole: error (default) or skip")
-      ->transform(CLI::Transformer(std::map<std::string, DamagedPolicy>{
-          {"skip", DamagedPolicy::kSkip}, {"error", DamagedPolicy::kError}}))
-      ->type_name("POLICY");
+  add_choice_option<UnlinkedPolicy>(
+      *command, "--unlinked", options.unlinked,
+      {{"odometry", UnlinkedPolicy::kOdometry},
+       {"drop", UnlinkedPolicy::kDrop},
+       {"error", UnlinkedPolicy::kError}},
+      "signatures without an optimised pose: odometry (default), drop or error");
+  add_choice_option<DamagedPolicy>(
+      *command, "--damaged", options.damaged,
+      {{"error", DamagedPolicy::kError}, {"skip", DamagedPolicy::kSkip}},
+      "signatures that cannot be read whole: error (default) or skip");
   command->add_option("--jobs", options.jobs, "threads; default one for each core")
       ->check(CLI::Range(1, 256))
       ->type_name("N");

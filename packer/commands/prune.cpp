@@ -28,7 +28,8 @@ void run(const Arguments& arguments) {
         << leftover.bytes << " bytes)\n";
     files.push_back({{"file", leftover.name}, {"bytes", leftover.bytes}});
   }
-  out << arguments.folder << ": " << leftovers.size() << " files, " << bytes << " bytes "
+  out << arguments.folder << ": " << leftovers.size()
+      << (leftovers.size() == 1 ? " file, " : " files, ") << bytes << " bytes "
       << (arguments.dry_run ? "to remove\n" : "removed\n");
   nlohmann::ordered_json json;
   json["map"] = arguments.folder;

@@ -159,17 +159,23 @@ int run_calibrate(const CalibrateArguments& arguments) {
   const auto result = calibrate(*steps, *truth, odometry.wheels, fault);
   if (!result) return fail(arguments.can + " with " + arguments.truth + ": " + fault);
 
-  std::cout << arguments.can << ": " << fixed(result->distance_m, 1) << " m, "
-            << fixed(result->turned_rad, 1) << " rad of turning, " << fixed(result->seconds, 1)
-            << " s in " << result->windows << " windows\n\n"
-            << table(*result) << '\n'
-            << "left and right wheel: " << fixed(result->difference * 100, 3) << " +- "
-            << fixed(result->difference_sigma * 100, 3) << " % apart, "
-            << (result->sides_differ ? "over 3 sigma: told apart"
-                                     : "less than 3 sigma: taken to be alike")
-            << "\n\nPaste over the same keys of " << arguments.config << ":\n\n"
-            << calibrated_yaml(*result, odometry);
+  const bool json_on_output = arguments.json == "-";
+  (json_on_output ? std::cerr : std::cout)
+      << arguments.can << ": " << fixed(result->distance_m, 1) << " m, "
+      << fixed(result->turned_rad, 1) << " rad of turning, " << fixed(result->seconds, 1)
+      << " s in " << result->windows << " windows\n\n"
+      << table(*result) << '\n'
+      << "left and right wheel: " << fixed(result->difference * 100, 3) << " +- "
+      << fixed(result->difference_sigma * 100, 3) << " % apart, "
+      << (result->sides_differ ? "over 3 sigma: told apart"
+                               : "less than 3 sigma: taken to be alike")
+      << "\n\nPaste over the same keys of " << arguments.config << ":\n\n"
+      << calibrated_yaml(*result, odometry);
   if (arguments.json.empty()) return 0;
+  if (json_on_output) {
+    std::cout << json_of(*result);
+    return 0;
+  }
   if (const auto written = write_file_atomically(arguments.json, json_of(*result)); !written) {
     return fail(arguments.json + ": cannot be written: " + to_string(written.error().code));
   }

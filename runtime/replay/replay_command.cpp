@@ -99,6 +99,10 @@ int run_replay(const ReplayArguments& arguments) {
   if (arguments.start.kind == StartChoice::Kind::kTruth && arguments.truth.empty()) {
     return fail("--start truth needs --truth FILE", 2);
   }
+  if (arguments.start.kind == StartChoice::Kind::kFix && arguments.corrections.empty()) {
+    std::cerr << "zoned replay: warning: nothing ever tells where the robot is: give "
+                 "--corrections FILE, or --start X,Y,YAW_DEG or truth\n";
+  }
   RunInputs inputs;
   if (const auto fault = read_run_inputs(arguments, inputs)) return fail(*fault);
   std::vector<BaselineRow> baseline;

@@ -130,7 +130,8 @@ std::string summary_table(const RunSummary& s) {
   row("zones loaded", count(s.zones_loaded) + ", unloaded " + count(s.zones_unloaded));
   row("read from storage", bytes_text(s.bytes_loaded));
   row("zone switches", count(s.zone_switches));
-  row("first zone resident", "after " + fixed(s.start_s, 2) + " s");
+  row("first zone resident",
+      s.zones_loaded == 0 ? "never" : "after " + fixed(s.start_s, 2) + " s");
   row("own zone absent", fixed(s.zone_absent_s, 2) + " s");
   row("waiting for room", fixed(s.blocked_s, 2) + " s");
   row("in a wrong zone", fixed(s.wrong_zone_s, 2) + " s");

@@ -80,8 +80,14 @@ exits 1 replay map --events /nowhere/at/all.jsonl
 exits 2 replay map --budget 12MB
 exits 2 replay map --start here
 exits 2 replay map --max-signatures many
+exits 2 replay map --max-signatures -1
 exits 2 replay map --no-such-option
 exits 2 "$bin/zoned"
+exits 2 "$bin/zoned" wander
+says wander
+exits 0 "$bin/zoned" replay --config "$config" --map map --can "$can"
+says "nothing ever tells where the robot is"
+says "first zone resident *never"
 { echo "nonsense"; head -2000 "$run/can0.log"; } >broken.log
 can=broken.log exits 0 replay map --json broken.json
 says "broken.log:1:"

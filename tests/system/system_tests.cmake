@@ -13,6 +13,9 @@ if(TARGET zonepack AND TARGET zoned)
                      ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
     set_tests_properties(system/map_change PROPERTIES TIMEOUT 600)
   endif()
+  add_test(NAME system/can_utils
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/can_utils_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
   add_test(NAME system/recording
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/recording_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})

@@ -22,7 +22,7 @@ TEST(BuildUsage, ExitsWith2AndNamesTheOption) {
       {"build --db map.db --zones zones.geojson", "--out"},
       {"build --db map.db --zones zones.geojson --out map --payload features,smells", "smells"},
       {"build --db map.db --zones zones.geojson --out map --payload features,", "payload"},
-      {"build --db map.db --zones zones.geojson --out map --orphans keep", "--orphans"},
+      {"build --db map.db --zones zones.geojson --out map --orphans keep", "--orphans: 'keep' is none of nearest, drop, error"},
       {"build --db map.db --zones zones.geojson --out map --unlinked guess", "--unlinked"},
       {"build --db map.db --zones zones.geojson --out map --damaged mend", "--damaged"},
       {"build --db map.db --zones zones.geojson --out map --jobs 0", "--jobs"},
@@ -33,7 +33,7 @@ TEST(BuildUsage, ExitsWith2AndNamesTheOption) {
       {"export map", "--jsonl"},
       {"plan map --budget many", "many"},
       {"plan", "DIR"},
-      {"pack", "subcommand"},
+      {"pack", "pack"},
       {"", "subcommand"}};
   for (const auto& [arguments, word] : cases) {
     const Outcome outcome = packer.zonepack(arguments);

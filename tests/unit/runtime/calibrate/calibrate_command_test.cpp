@@ -106,6 +106,12 @@ TEST(CalibrateCommand, WritesJsonAndTellsWhatIsWrong) {
   EXPECT_GT(result["before"]["end_m"], result["after"]["end_m"]);
   EXPECT_EQ(result["sides_differ"], false);
 
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(run_calibrate({kConfig, kLog, kTruth, "-"}), 0);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), text_of(json));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), out);
+
   const auto fault_of = [](const CalibrateArguments& arguments) {
     testing::internal::CaptureStderr();
     EXPECT_EQ(run_calibrate(arguments), 1);
