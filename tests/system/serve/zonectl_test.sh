@@ -53,8 +53,18 @@ check 'dump into nowhere' 1 'cannot be written' "$zonectl" dump "$work/no/folder
 check 'events' 0 'zone_wanted b$' timeout --preserve-status 3 "$zonectl" events
 check 'watch without a terminal' 0 '^in a  x 1.00  y 2.00 m .* NOT KEEPING UP' timeout --preserve-status 3 "$zonectl" watch
 # In a terminal: pictures until interrupted, and the terminal as it was before.
-TERM=xterm check 'watch' 0 $'\x1b\\[\\?1049h.*zoned.*in a' script -qec "timeout -s INT --preserve-status 4 $zonectl watch" /dev/null
-tr -d '\r' <"$work/out" | tail -c 32 | grep -qF $'\x1b[?1049l' || { echo 'watch: the terminal was left changed'; failed=1; }
+TERM=xterm script -qefc "exec '$zonectl' watch" "$work/seen" >/dev/null 2>&1 &
+watching=$!
+for ((tries = 0; tries < 600; tries++)); do
+  if grep -qs 'in a' "$work/seen"; then break; fi
+  sleep 0.1
+done
+pkill -INT -P $watching
+got=0
+wait $watching || got=$?
+[ $got = 0 ] || { echo "watch: exit $got when interrupted, expected 0"; failed=1; }
+grep -qF $'\x1b[?1049h' "$work/seen" || { echo 'watch: no picture'; failed=1; }
+tail -n +2 "$work/seen" | tr -d '\r' | grep -qF $'\x1b[?1049l' || { echo 'watch: the terminal was left changed'; failed=1; }
 pid=$run_PID
 eval "exec ${run[1]}>&-"
 wait "$pid"
