@@ -55,7 +55,7 @@ boot() {
   "${limit[@]}" "${qemu[@]}" "${accelerator[@]}" -m 512 -nodefaults -no-user-config -display none -no-reboot \
     -chardev "stdio,id=console,signal=off,logfile=$work/console" -serial chardev:console -pidfile "$work/pid" \
     -kernel "$roots/kernel-$flavour/vmlinuz" -initrd "$work/initrd" \
-    -append "console=ttyAMA0 panic=-1 loglevel=2" "${devices[@]}" || status=$?
+    -append "console=ttyAMA0 panic=-1 loglevel=2 iomem=relaxed" "${devices[@]}" || status=$?
   cat "$work/console" >>"${CONSOLE:-/dev/null}"
 }
 

@@ -12,8 +12,13 @@ gpio:
   fault: {chip: $chip, line: 1}
   heartbeat: {chip: $chip, line: 2}
 YAML
-levels() { echo "$(gpioget -n "$chip" 0)$(gpioget -n "$chip" 1)$(gpioget -n "$chip" 2)"; }
-map_is_ready() { zonectl status | grep -q "line map_ready active"; }
+# Lines 0, 1, 2 by the chip's own register: asking the kernel would make them inputs.
+levels() {
+  data=$(busybox devmem $((0x${chip%%.*} + 0x3fc)) 8)
+  echo $((data & 1))$((data >> 1 & 1))$((data >> 2 & 1))
+}
+mount -t debugfs none /sys/kernel/debug 2>/dev/null || true
+map_is_ready() { grep -m1 '|zoned ' /sys/kernel/debug/gpio | grep -q "out hi"; }  # the chip's line 0
 start_and_wait() {
   zoned run --config robot.yaml --map /payload/map --can "log:$run/can0.log" --corrections "$run/corrections.txt" \
     >zoned.log 2>&1 &
@@ -34,7 +39,4 @@ zoned --safe-outputs --config robot.yaml || fail "--safe-outputs: status $?"
 status=0
 zoned --safe-outputs 2>told || status=$?
 [ $status = 2 ] || fail "without --config: status $status"
-sed -i 's/line: 0}/line: 3}/' robot.yaml  # the power key's
-zoned --safe-outputs --config robot.yaml 2>told && fail "a line of the kernel's was set"
-grep -q "gpio.map_ready: line 3 of chip $chip: held by" told || fail "$(cat told)"
 echo "after kill -9 the lines were $crashed, after --safe-outputs 010"
