@@ -25,8 +25,9 @@ wait_for() {
   done
 }
 
-# A virtual CAN bus that takes classic and FD frames.
+# A virtual CAN bus that takes classic and FD frames; new, whatever a test before left of that name.
 vcan_up() {  # NAME
+  ip link del "$1" 2>/dev/null || true
   ip link add "$1" type vcan
   ip link set "$1" mtu 72
   ip link set "$1" up
