@@ -6,12 +6,12 @@
 
 #include "platform/base/require.hpp"
 #include "platform/clock.hpp"
+#include "runtime/live/line_opening.hpp"
 
 namespace zonepack {
 namespace {
 
 constexpr std::int64_t kLook_ns = 2'000'000;
-constexpr std::int64_t kTryAgain_ns = 1'000'000'000;
 constexpr std::size_t kQueued = 256;
 
 }  // namespace
@@ -25,22 +25,7 @@ InputLines::InputLines(GpioPort& port, const GpioSettings& gpio, LineBoard& boar
 }
 
 bool InputLines::open(bool allow_degraded, std::string& fault, std::vector<std::string>& warnings) {
-  for (Line& line : lines_) {
-    auto opened = port_.open(line.request.settings);
-    if (opened) {
-      line.line = std::move(opened).value();
-      line.row->working.store(true);
-      continue;
-    }
-    const std::string wrong =
-        line_fault(port_, line.request.name, line.request.settings.name, opened.error());
-    if (!allow_degraded) {
-      fault = wrong + "; or go on without by --allow-degraded";
-      return false;
-    }
-    warnings.push_back(wrong);
-  }
-  return true;
+  return open_lines(port_, lines_, allow_degraded, fault, warnings);
 }
 
 Result<void> InputLines::start() {
@@ -68,7 +53,7 @@ void InputLines::turn(std::int64_t now_ns) noexcept {
   for (Line& line : lines_) {
     // One more for the edge that a failure makes.
     if (edges.free_space() <= kAtOnce) return;
-    if (!line.line && !reopen(line, now_ns)) continue;
+    if (!line.line && !reopen_line(port_, line, now_ns)) continue;
     const auto count = line.line->take(taken);
     if (!count) {
       fail(line, now_ns);
@@ -89,21 +74,8 @@ void InputLines::fail(Line& line, std::int64_t now_ns) noexcept {
   line.row->failures.fetch_add(1);
   line.row->working.store(false);
   line.line.reset();
-  line.retry_ns = now_ns + kTryAgain_ns;
+  line.retry_ns = now_ns + kTryLineAgain_ns;
   if (line.row->active.load()) tell(line, {now_ns, false});
-}
-
-bool InputLines::reopen(Line& line, std::int64_t now_ns) noexcept {
-  if (now_ns < line.retry_ns) return false;
-  line.retry_ns = now_ns + kTryAgain_ns;
-  auto opened = port_.open(line.request.settings);
-  line.row->working.store(opened.ok());
-  if (!opened) {
-    line.row->failures.fetch_add(1);
-    return false;
-  }
-  line.line = std::move(opened).value();
-  return true;
 }
 
 }  // namespace zonepack

@@ -48,7 +48,6 @@ class InputLines {
   void run();
   void tell(Line& line, const GpioEdge& edge) noexcept;
   void fail(Line& line, std::int64_t now_ns) noexcept;
-  bool reopen(Line& line, std::int64_t now_ns) noexcept;
 
   GpioPort& port_;
   std::vector<Line> lines_;

@@ -31,6 +31,7 @@ class LiveLines {
 
   LineBoard board;
   OutputLines outputs;
-  InputLines inputs;};
+  InputLines inputs;
+};
 
 }  // namespace zonepack

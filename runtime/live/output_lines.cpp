@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "platform/clock.hpp"
+#include "runtime/live/line_opening.hpp"
 
 namespace zonepack {
 namespace {
 
 constexpr std::int64_t kSetEvery_ns = 2'000'000;
-constexpr std::int64_t kRetry_ns = 1'000'000'000;
 constexpr std::int64_t kLeastStuck_ns = 100'000'000;
 constexpr int kStuckPeriods = 10;
 constexpr int kMostWait_ms = 1000;  // of make_safe(), for a set under way
@@ -35,23 +35,8 @@ OutputLines::OutputLines(GpioPort& port, const GpioSettings& gpio, LineBoard& bo
 
 bool OutputLines::open(bool allow_degraded, std::string& fault,
                        std::vector<std::string>& warnings) {
-  for (Line& line : lines_) {
-    auto opened = port_.open(line.request.settings);
-    if (opened) {
-      line.line = std::move(opened).value();
-      line.active = line.request.settings.active;
-      line.row->active.store(line.active);
-      line.row->working.store(true);
-      continue;
-    }
-    const std::string wrong =
-        line_fault(port_, line.request.name, line.request.settings.name, opened.error());
-    if (!allow_degraded) {
-      fault = wrong + "; or go on without by --allow-degraded";
-      return false;
-    }
-    warnings.push_back(wrong);
-  }
+  if (!open_lines(port_, lines_, allow_degraded, fault, warnings)) return false;
+  for (Line& line : lines_) begin(line);
   return true;
 }
 
@@ -141,7 +126,7 @@ bool OutputLines::put(Line& line, bool active, std::int64_t now_ns) noexcept {
   if (!done) {
     line.row->failures.fetch_add(1);
     line.line.reset();
-    line.retry_ns = now_ns + kRetry_ns;
+    line.retry_ns = now_ns + kTryLineAgain_ns;
     return false;
   }
   line.row->changes.fetch_add(line.active != active ? 1 : 0);
@@ -150,18 +135,15 @@ bool OutputLines::put(Line& line, bool active, std::int64_t now_ns) noexcept {
   return true;
 }
 
-bool OutputLines::reopen(Line& line, std::int64_t now_ns) noexcept {
-  if (now_ns < line.retry_ns) return false;
-  line.retry_ns = now_ns + kRetry_ns;
-  auto opened = port_.open(line.request.settings);
-  if (!opened) {
-    line.row->failures.fetch_add(1);
-    return false;
-  }
-  line.line = std::move(opened).value();
-  line.active = line.request.settings.active;
+// As it was asked to be when it is opened.
+void OutputLines::begin(Line& line) noexcept {
+  line.active = line.line != nullptr && line.request.settings.active;
   line.row->active.store(line.active);
-  line.row->working.store(true);
+}
+
+bool OutputLines::reopen(Line& line, std::int64_t now_ns) noexcept {
+  if (!reopen_line(port_, line, now_ns)) return false;
+  begin(line);
   return true;
 }
 

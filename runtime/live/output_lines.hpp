@@ -71,6 +71,7 @@ class OutputLines {
   void follow(const LiveStatus& status, const LoadEnd& load, std::int64_t now_ns) noexcept;
   Line* find(OutputKind kind) noexcept;
   bool put(Line& line, bool active, std::int64_t now_ns) noexcept;
+  void begin(Line& line) noexcept;
   bool reopen(Line& line, std::int64_t now_ns) noexcept;
   void follow_latency(const LiveStatus& status, const LoadEnd& load, bool ready,
                       std::int64_t now_ns) noexcept;
