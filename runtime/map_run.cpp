@@ -113,7 +113,6 @@ void MapRun::change(const SlotChain& slots) noexcept {
   }
   loader_.use(next_->catalog);
   next_->memory.count_on(map_->memory.counters());
-  next_->memory.freeze(map_->memory.frozen());
   const auto tables = next_->memory.set_aside(map_->memory.limits().fixed, 0);
   ZP_REQUIRE(tables.ok());
   next_->cycle.go_on_from(map_->cycle);
