@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "runtime/event_log.hpp"
+#include "runtime/pack_format/checksum.hpp"
 
 namespace zonepack {
 namespace {
@@ -267,12 +268,7 @@ std::string metrics_text(const wire::Status& status) {
 
 std::string map_version(const wire::Status& status) {
   if (status.map_version() == nullptr) return {};
-  std::string text;
-  for (const std::uint8_t byte : *status.map_version()) {
-    constexpr char kDigits[] = "0123456789abcdef";
-    text += {kDigits[byte >> 4], kDigits[byte & 15]};
-  }
-  return text;
+  return to_hex({status.map_version()->data(), status.map_version()->size()});
 }
 
 std::string status_json(const wire::Status& status) {
