@@ -19,8 +19,7 @@ namespace {
 
 std::set<std::string> named_packs(const std::filesystem::path& folder) {
   const std::string path = (folder / kManifestName).string();
-  const Result<std::vector<std::byte>> file =
-      read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail));
+  const Result<std::vector<std::byte>> file = read_file(path, kMaxManifestFileBytes);
   const Result<const fb::Manifest*> manifest =
       file ? check_manifest(*file) : Result<const fb::Manifest*>(file.error());
   if (!manifest) {

@@ -80,8 +80,7 @@ std::string source_text(const fb::Provenance& source) {
 
 report::PackReport read_pack_report(const std::string& folder, PayloadMask payload) {
   const std::string path = folder + "/" + std::string(kManifestName);
-  const Result<std::vector<std::byte>> file =
-      read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail));
+  const Result<std::vector<std::byte>> file = read_file(path, kMaxManifestFileBytes);
   if (!file) throw cannot_read(path, file.error());
   const Result<const fb::Manifest*> checked = check_manifest(*file);
   if (!checked) throw cannot_read(path, checked.error());

@@ -30,8 +30,7 @@ void MapReader::fail(const std::string& path, const Error& error) {
 
 MapReader::MapReader(std::filesystem::path folder) : folder_(std::move(folder)) {
   const std::string path = (folder_ / kManifestName).string();
-  Result<std::vector<std::byte>> file =
-      read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail));
+  Result<std::vector<std::byte>> file = read_file(path, kMaxManifestFileBytes);
   if (!file) fail(path, file.error());
   file_ = std::move(*file);
   const Result<const fb::Manifest*> checked = check_manifest(file_);

@@ -134,8 +134,7 @@ void print(const fb::Manifest& manifest, const std::string& folder, const std::s
 
 nlohmann::ordered_json inspect_map(const std::string& folder, std::ostream& out) {
   const std::string path = folder + "/" + std::string(kManifestName);
-  const Result<std::vector<std::byte>> file =
-      read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail));
+  const Result<std::vector<std::byte>> file = read_file(path, kMaxManifestFileBytes);
   const Result<const fb::Manifest*> checked =
       file ? check_manifest(*file) : Result<const fb::Manifest*>(file.error());
   if (!checked) {

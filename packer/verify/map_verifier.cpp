@@ -96,9 +96,7 @@ class MapVerifier {
              kCopyAgain);
       return nullptr;
     }
-    constexpr std::uint64_t kMost =
-        kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail);
-    if ((*file)->size() > kMost) {
+    if ((*file)->size() > kMaxManifestFileBytes) {
       report({.file = kManifest}, manifest_fault({ErrorCode::kTooLarge, 0}), kCopyAgain);
       return nullptr;
     }

@@ -50,8 +50,7 @@ void MapChange::begin() {
 Result<std::uint64_t> MapChange::prepare(const RunMap& in_use) {
   const std::string& folder = in_use.catalog().folder;
   const std::string path = folder + "/" + std::string(kManifestName);
-  auto manifest = read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail),
-                            ReadMode::kBuffered);
+  auto manifest = read_file(path, kMaxManifestFileBytes, ReadMode::kBuffered);
   auto catalog = manifest ? Catalog::read(*manifest, folder, in_use.catalog().payload)
                           : Result<Catalog>(manifest.error());
   if (!catalog) {

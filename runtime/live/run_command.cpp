@@ -48,8 +48,7 @@ std::optional<std::string> make_preface(const RunArguments& arguments, const Run
   preface.map_folder = catalog.folder;
   preface.terms = terms;
   const std::string path = catalog.folder + "/" + std::string(kManifestName);
-  auto manifest =
-      read_file(path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail));
+  auto manifest = read_file(path, kMaxManifestFileBytes);
   if (!manifest || manifest_digest(*manifest) != catalog.version) {
     return path + ": changed while zoned was starting; start it again";
   }

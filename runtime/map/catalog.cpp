@@ -16,8 +16,8 @@ std::string text_of(const flatbuffers::String* text) {
 
 Result<Catalog> Catalog::open(const std::string& folder, PayloadMask payload) {
   const std::string path = folder + "/" + std::string(kManifestName);
-  const Result<std::vector<std::byte>> file = read_file(
-      path, kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail), ReadMode::kBuffered);
+  const Result<std::vector<std::byte>> file =
+      read_file(path, kMaxManifestFileBytes, ReadMode::kBuffered);
   if (!file) return file.error();
   return read(*file, folder, payload);
 }

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <string_view>
 
+#include "platform/base/byte_count.hpp"
 #include "platform/base/result.hpp"
 #include "runtime/pack_format/checksum.hpp"
 #include "runtime/pack_format/chunk_view.hpp"
 #include "runtime/pack_format/geometry.hpp"
 #include "runtime/pack_format/ids.hpp"
+#include "runtime/pack_format/limits.hpp"
 #include "runtime/pack_format/manifest_generated.h"
 #include "runtime/pack_format/pack_file.hpp"
 
@@ -36,6 +38,9 @@ struct ManifestTail {
   Magic magic = kManifestEndMagic;
 };
 static_assert(sizeof(ManifestTail) == 40);
+
+inline constexpr ByteCount kMaxManifestFileBytes =
+    kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail);
 
 // Checks a whole manifest file and everything that its readers rely on: digest, structure, names
 // (present, unique, sorted, within limits), polygons, portals and edges between known zones, slot

@@ -10,9 +10,6 @@
 namespace zonepack {
 namespace {
 
-constexpr std::uint64_t kMostFileBytes =
-    kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail);
-
 std::uint32_t blocks_of(std::uint32_t nodes) noexcept {
   return (nodes + NodeStore::kBlockNodes - 1) / NodeStore::kBlockNodes;
 }
@@ -30,7 +27,7 @@ Result<NodeStore> NodeStore::open(const Catalog& catalog) {
   const std::string path = catalog.folder + "/" + std::string(kManifestName);
   Result<StorageFile> file = StorageFile::open(path);
   if (!file) return file.error();
-  if (file->size() > kMostFileBytes) {
+  if (file->size() > kMaxManifestFileBytes) {
     return {ErrorCode::kTooLarge, static_cast<std::int64_t>(file->size())};
   }
   // A manifest is far shorter than what 32 bits can address (kMaxManifestBytes).
