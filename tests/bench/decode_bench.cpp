@@ -23,18 +23,19 @@
 #include <vector>
 
 #include "runtime/map/loader.hpp"
-#include "runtime/memory/arena.hpp"
+#include "tests/bench/bench_map.hpp"
 
 namespace zonepack {
 namespace {
+
+using bench::BenchMap;
+using bench::fail;
 
 double now_s() {
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
 }
-
-[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
 
 // What the plain versions need of a chunk, laid out before the clock starts.
 struct PlainChunk {
@@ -158,18 +159,12 @@ std::string hardware() {
 }
 
 void measure(const std::string& folder, const std::string& name, PayloadMask payload, int rounds) {
-  const Result<Catalog> catalog = Catalog::open(folder, payload);
-  if (!catalog) fail(folder + ": " + to_string(catalog.error().code));
-  std::uint32_t most = 1;
-  for (const CatalogZone& zone : catalog->zones) most = std::max(most, zone.slots);
-  Arena arena(most, kSlotBytes);
-  std::vector<std::byte*> slots;
-  for (SlotIndex i = 0; i < most; ++i) slots.push_back(arena.slot(i).data());
+  const BenchMap map(folder, payload);
   std::vector<std::byte> buffer(kReadBufferBytes), copied(kSlotBytes);
   std::vector<Zone> zones;
   std::uint64_t decoded = 0;
-  for (ZoneId id = 0; id < catalog->zones.size(); ++id) {
-    zones.push_back(prepare(*catalog, id, slots));
+  for (ZoneId id = 0; id < map.catalog.zones.size(); ++id) {
+    zones.push_back(prepare(map.catalog, id, map.slots));
     decoded += zones.back().decoded;
   }
   std::vector<double> over_plain, over_lz4;
@@ -184,10 +179,10 @@ void measure(const std::string& folder, const std::string& name, PayloadMask pay
             lz4 += time_lz4(zones[i]);
             break;
           case 1:
-            plain += time_plain(*catalog, zones[i], buffer);
+            plain += time_plain(map.catalog, zones[i], buffer);
             break;
           default: {
-            const Loader times = time_loader(*catalog, zones[i], slots, buffer);
+            const Loader times = time_loader(map.catalog, zones[i], map.slots, buffer);
             loader += times.load_s;
             opening += times.open_s;
           }
@@ -214,16 +209,10 @@ void measure(const std::string& folder, const std::string& name, PayloadMask pay
 }
 
 void write_decoded(const std::string& folder, const std::string& path) {
-  const Result<Catalog> catalog = Catalog::open(folder, kDefaultPayload);
-  if (!catalog) fail(folder + ": " + to_string(catalog.error().code));
-  std::uint32_t most = 1;
-  for (const CatalogZone& zone : catalog->zones) most = std::max(most, zone.slots);
-  Arena arena(most, kSlotBytes);
-  std::vector<std::byte*> slots;
-  for (SlotIndex i = 0; i < most; ++i) slots.push_back(arena.slot(i).data());
+  const BenchMap map(folder, kDefaultPayload);
   std::ofstream out(path, std::ios::binary);
-  for (ZoneId id = 0; id < catalog->zones.size(); ++id) {
-    const Zone zone = prepare(*catalog, id, slots);
+  for (ZoneId id = 0; id < map.catalog.zones.size(); ++id) {
+    const Zone zone = prepare(map.catalog, id, map.slots);
     time_lz4(zone);
     for (const PlainChunk& chunk : zone.chunks) {
       out.write(reinterpret_cast<const char*>(chunk.out), chunk.decoded);

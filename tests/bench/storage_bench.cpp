@@ -24,12 +24,14 @@
 
 #include "runtime/map/loader.hpp"
 #include "runtime/memory/arena.hpp"
+#include "tests/bench/bench_map.hpp"
 #include "tests/support/page_cache.hpp"
 
 namespace zonepack {
 namespace {
 
-[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
+using bench::BenchMap;
+using bench::fail;
 
 double now_s(clockid_t clock) {
   timespec t;
@@ -89,10 +91,8 @@ class Cgroup {
 
 class Bench {
  public:
-  explicit Bench(const std::string& folder)
-      : catalog_(open(folder)), arena_(most_slots(catalog_), kSlotBytes) {
-    for (SlotIndex i = 0; i < most_slots(catalog_); ++i) slots_.push_back(arena_.slot(i).data());
-    for (const CatalogZone& zone : catalog_.zones) {
+  explicit Bench(const std::string& folder) : map_(folder, kDefaultPayload) {
+    for (const CatalogZone& zone : map_.catalog.zones) {
       stored_ += zone.stored_bytes;
       paths_.push_back(folder + "/" + zone.pack);
     }
@@ -125,16 +125,6 @@ class Bench {
   std::uint64_t stored() const { return stored_; }
 
  private:
-  static Catalog open(const std::string& folder) {
-    Result<Catalog> catalog = Catalog::open(folder, kDefaultPayload);
-    if (!catalog) fail(folder + ": no map: " + to_string(catalog.error().code));
-    return std::move(*catalog);
-  }
-  static std::uint32_t most_slots(const Catalog& catalog) {
-    std::uint32_t most = 1;
-    for (const CatalogZone& zone : catalog.zones) most = std::max(most, zone.slots);
-    return most;
-  }
   std::span<std::byte> buffer() {
     void* at = memory_.data();
     std::size_t room = memory_.size();
@@ -157,7 +147,8 @@ class Bench {
   void work(const Way& way, ZoneId zone, bool load, AfterStep&& after_step) {
     if (way.plain) return plain(zone, after_step);
     if (!load) return windows(way, zone, after_step);
-    Result<ZoneLoad> under_way = ZoneLoad::begin(catalog_, zone, slots_, buffer(), way.mode);
+    Result<ZoneLoad> under_way =
+        ZoneLoad::begin(map_.catalog, zone, map_.slots, buffer(), way.mode);
     if (!under_way) fail(paths_[zone] + ": " + to_string(under_way.error().code));
     for (;;) {
       const Result<bool> more = under_way->step();
@@ -241,9 +232,7 @@ class Bench {
     std::printf("\n");
   }
 
-  Catalog catalog_;
-  Arena arena_;
-  std::vector<std::byte*> slots_;
+  BenchMap map_;
   std::vector<std::byte> memory_ = std::vector<std::byte>(kReadBufferBytes + 4096);
   std::vector<std::string> paths_;
   std::uint64_t stored_ = 0;

@@ -22,18 +22,22 @@
 #include "platform/clock.hpp"
 #include "platform/shared_memory.hpp"
 #include "runtime/live/live_loader.hpp"
+#include "tests/bench/bench_map.hpp"
 #include "tests/support/page_cache.hpp"
 
 namespace zonepack {
 namespace {
 
-constexpr double kTarget = 1.5, kMost = 3;
+using bench::fail;
+using bench::most_slots;
+using bench::open_map;
 
-[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
+constexpr double kTarget = 1.5, kMost = 3;
 
 class Latency {
  public:
-  explicit Latency(const std::string& folder) : catalog_(open(folder)), shared_(lay_out()) {
+  explicit Latency(const std::string& folder)
+      : catalog_(open_map(folder, kDefaultPayload)), shared_(lay_out()) {
     for (const CatalogZone& zone : catalog_.zones) paths_.push_back(folder + "/" + zone.pack);
     if (!loader_.start({.name = "loader", .fifo_priority = 40}, true)) fail("no loader thread");
   }
@@ -58,15 +62,8 @@ class Latency {
  private:
   using Times = std::vector<double>;
 
-  static Catalog open(const std::string& folder) {
-    Result<Catalog> catalog = Catalog::open(folder, kDefaultPayload);
-    if (!catalog) fail(folder + ": no map: " + to_string(catalog.error().code));
-    return std::move(*catalog);
-  }
-
   SharedMap lay_out() {
-    std::uint32_t slots = 1;
-    for (const CatalogZone& zone : catalog_.zones) slots = std::max(slots, zone.slots);
+    const std::uint32_t slots = most_slots(catalog_);
     const auto zones = static_cast<std::uint32_t>(catalog_.zones.size());
     auto memory = SharedMemory::create("zone-latency", shared_map_bytes(zones, slots));
     if (!memory) fail("no memory");

@@ -51,9 +51,7 @@ add_test(NAME system/read_by_hand
          COMMAND ${CMAKE_CURRENT_LIST_DIR}/read_by_hand_test.sh ${PROJECT_SOURCE_DIR})
 
 # Our DBC reader against another one, where that is installed.
-add_executable(decode_dbc ${CMAKE_CURRENT_LIST_DIR}/dbc/decode_dbc.cpp)
-zonepack_settings(decode_dbc)
-target_link_libraries(decode_dbc PRIVATE zonepack_runtime)
+zonepack_test_program(dbc/decode_dbc.cpp zonepack_runtime)
 file(GLOB dbc_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/config/*.dbc)
 add_test(NAME system/dbc_other_reader
          COMMAND /usr/bin/python3 ${CMAKE_CURRENT_LIST_DIR}/dbc/other_reader_test.py
@@ -62,9 +60,7 @@ set_tests_properties(system/dbc_other_reader PROPERTIES SKIP_RETURN_CODE 77)
 
 # zonectl against a run that is made up.
 if(TARGET zonectl)
-  add_executable(made_up_run ${CMAKE_CURRENT_LIST_DIR}/serve/made_up_run.cpp)
-  zonepack_settings(made_up_run)
-  target_link_libraries(made_up_run PRIVATE zonepack_test_support zonepack_runtime)
+  zonepack_test_program(serve/made_up_run.cpp zonepack_test_support zonepack_runtime)
   add_test(NAME system/zonectl
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/serve/zonectl_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 endif()
