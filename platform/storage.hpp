@@ -22,13 +22,14 @@ enum class ReadMode : std::uint8_t {
 };
 
 // The robot's, by measurement: `storage_bench MAP` (tests/bench) loading 22 MB in 24 packs, cold,
-// ext4 on virtio, 2 shared cores, closing the packs included; dd alone reads 860 MB/s.
+// ext4 on virtio, 2 shared cores, closing the packs included; dd alone reads 1240 MB/s.
 //              MB/s   CPU ms/MB   a zone's time over dd's, p50   page cache at most, left
-//   buffered   500    0.8         1.6                            1.7 MiB, 0
-//   mapped     450    1.0         1.75                           1.7 MiB, 0
-//   direct     330    1.1         2.3                            28 KiB, 0
-//   (cached)   610    0.65        1.4                            all, all
-// The first two read ahead while we decode; mapped ones unmap their windows on every core.
+//   buffered   920    0.6         1.2                            1.7 MiB, 0
+//   mapped     320    3.0         3.6                            1.7 MiB, 0
+//   direct     410    1.3         2.8                            28 KiB, 0
+//   (cached)   890    0.6         1.2                            all, all
+// The first two read ahead while we decode; mapped ones unmap their windows on every core. Beyond
+// that, a disk faster than the decoder (2.8 GB/s of stored bytes, warm) waits for it.
 inline constexpr ReadMode kDefaultReadMode = ReadMode::kBuffered;
 
 // A file opened for reading, whose bytes are copied out, never looked at in place: a file that
@@ -39,7 +40,7 @@ inline constexpr ReadMode kDefaultReadMode = ReadMode::kBuffered;
 // time (it counts against the memory cgroup of the process) and next to nothing once the file is
 // closed. Other readers of the same file lose it from the cache, too.
 //
-// Threads: read_at() and read_mapped() from any; the window calls from one at a time.
+// Threads: read_at() from any; the window calls from one at a time.
 class StorageFile {
  public:
   static constexpr ByteCount kMostPageCache = 4 * kMiB;
@@ -54,11 +55,9 @@ class StorageFile {
   std::uint64_t size() const noexcept { return size_; }  // when it was opened
   ReadMode mode() const noexcept { return mode_; }       // the one in use
 
-  // Fills all of `out` from `offset`, or fails. No allocation.
+  // Fills all of `out` from `offset`, or fails. No allocation. Through mapped windows in kMapped and
+  // kDirect, whose own reads need aligned buffers.
   Result<void> read_at(std::uint64_t offset, std::span<std::byte> out) const noexcept;
-
-  // The same through mapped windows, whatever the mode: for the few pages of headers and indices.
-  Result<void> read_mapped(std::uint64_t offset, std::span<std::byte> out) const noexcept;
 
   // The longest window that read_window() brings into this buffer, wherever it starts: the buffer
   // less what direct reads need to align both ends, 4 KiB when it starts on a page, else up to 8.
@@ -68,8 +67,8 @@ class StorageFile {
   Result<std::span<const std::byte>> read_window(std::uint64_t offset, std::size_t size,
                                                  std::span<std::byte> buffer) noexcept;
 
-  // Starts to bring these bytes into the page cache, without waiting: for what is soon read mapped,
-  // or by windows of kMapped or kBuffered, in rising order. False when kMostRanges wait to be read.
+  // Starts to bring these bytes into the page cache, without waiting: for what is soon read by
+  // read_at(), or by windows of kMapped or kBuffered, in rising order. False when kMostRanges wait to be read.
   // The caller keeps to kMostAhead altogether. Closing waits for what nobody read, because pages on
   // their way cannot be dropped.
   static constexpr ByteCount kMostAhead = 1 * kMiB;

@@ -136,15 +136,9 @@ Result<void> StorageFile::probe(std::uint64_t offset, std::uint64_t size) const 
 }
 
 Result<void> StorageFile::read_at(std::uint64_t offset, std::span<std::byte> out) const noexcept {
-  if (mode_ == ReadMode::kDirect || mode_ == ReadMode::kMapped) return read_mapped(offset, out);
   if (const Result<void> allowed = probe(offset, out.size()); !allowed) return allowed;
-  return read_all(fd_, offset, out);
-}
-
-Result<void> StorageFile::read_mapped(std::uint64_t offset,
-                                      std::span<std::byte> out) const noexcept {
-  if (const Result<void> allowed = probe(offset, out.size()); !allowed) return allowed;
-  return copy_mapped(fd_, offset, out);
+  const bool mapped = mode_ == ReadMode::kDirect || mode_ == ReadMode::kMapped;
+  return mapped ? copy_mapped(fd_, offset, out) : read_all(fd_, offset, out);
 }
 
 std::size_t StorageFile::window_room(std::span<const std::byte> buffer) const noexcept {

@@ -5,10 +5,11 @@
 
 namespace zonepack {
 
-Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, ReadMode mode) {
+Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, ReadMode mode,
+                             std::uint64_t soon) {
   const CatalogZone& wanted = catalog.zones[zone];
   Result<PackReader> pack =
-      PackReader::open(catalog.folder + "/" + wanted.pack, &wanted.pack_digest, mode);
+      PackReader::open(catalog.folder + "/" + wanted.pack, &wanted.pack_digest, mode, soon);
   if (!pack) return pack.error();
   const fb::PackIndex& index = pack->index();
   if (index.zone()->str() != wanted.name || index.signatures() != wanted.signatures ||
@@ -21,13 +22,31 @@ Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, ReadMode mode)
 Result<ZoneLoad> ZoneLoad::begin(const Catalog& catalog, ZoneId zone,
                                  std::span<std::byte* const> slots,
                                  std::span<std::byte> read_buffer, ReadMode mode) {
-  Result<PackReader> pack = open_pack(catalog, zone, mode);
+  // The chunks of the usual payload come first in a pack, and are stored no longer than they decode.
+  const std::uint64_t soon = std::uint64_t{catalog.zones[zone].slots} * kSlotBytes;
+  Result<PackReader> pack = open_pack(catalog, zone, mode, soon);
   if (!pack) return pack.error();
   if (slots.size() < catalog.zones[zone].slots) {
     return {ErrorCode::kNoRoom, catalog.zones[zone].slots};
   }
   const PayloadMask mask = payload_closure(catalog.payload, pack->index().grid_needs_scan());
   return ZoneLoad(std::move(*pack), mask, slots, read_buffer);
+}
+
+ZoneLoad::ZoneLoad(PackReader pack, PayloadMask mask, std::span<std::byte* const> slots,
+                   std::span<std::byte> read_buffer)
+    : pack_(std::move(pack)),
+      mask_(mask),
+      slots_(slots),
+      buffer_(read_buffer),
+      fetched_(sizeof(PackHeader) + pack_.tail().index_size + sizeof(PackTail)) {
+  const auto& all = *pack_.index().chunks();
+  chunks_.reserve(all.size());
+  for (; ahead_ < all.size(); ++ahead_) {
+    const fb::ChunkEntry& entry = *all.Get(ahead_);
+    if (entry.offset() + entry.stored_size() > pack_.front_asked()) break;
+    if (wanted(entry)) ahead_bytes_ += entry.stored_size();
+  }
 }
 
 // Asks for wanted chunks some way ahead of the window, so that the disk works while we decode.

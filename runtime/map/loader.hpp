@@ -13,9 +13,9 @@
 namespace zonepack {
 
 // Opens the pack of a zone. kMismatch when it is a whole pack, but not the one that the manifest
-// names, or holds another zone or number of signatures or slots.
-Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone,
-                             ReadMode mode = ReadMode::kCached);
+// names, or holds another zone or number of signatures or slots. `soon`: see PackReader::open().
+Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, ReadMode mode = ReadMode::kCached,
+                             std::uint64_t soon = 0);
 
 // Loads one zone, chunk by chunk, from its pack into slots: read into a private buffer, check,
 // decode into place. Between two step() calls the load can be given up. One step waits for at most
@@ -42,11 +42,7 @@ class ZoneLoad {
 
  private:
   ZoneLoad(PackReader pack, PayloadMask mask, std::span<std::byte* const> slots,
-           std::span<std::byte> read_buffer)
-      : pack_(std::move(pack)), mask_(mask), slots_(slots), buffer_(read_buffer) {
-    chunks_.reserve(pack_.index().chunks()->size());
-    fetched_ = sizeof(PackHeader) + pack_.tail().index_size + sizeof(PackTail);
-  }
+           std::span<std::byte> read_buffer);
 
   Result<ByteSpan> stored(const fb::ChunkEntry& entry, std::byte* place);
   Result<ByteSpan> fetch(std::uint64_t from, std::size_t size, std::span<std::byte> buffer);
@@ -66,7 +62,7 @@ class ZoneLoad {
   ByteCount ahead_bytes_ = 0;  // ... and so many bytes of them were not yet read
   Placement placement_;
   ByteCount stored_bytes_ = 0;
-  ByteCount fetched_ = 0;
+  ByteCount fetched_;
   std::vector<ChunkRef> chunks_;
 };
 

@@ -8,37 +8,41 @@ namespace zonepack {
 namespace {
 
 constexpr std::uint64_t kUsualIndexBytes = 16 * kKiB;  // with the tail
-constexpr std::uint64_t kUsualWindowBytes = 64 * kKiB;
+constexpr std::uint64_t kFirstBytes = 256 * kKiB;
 
 }  // namespace
 
 Result<PackReader> PackReader::open(const std::string& path, const Digest32* expected,
-                                    ReadMode mode) {
+                                    ReadMode mode, std::uint64_t soon) {
   Result<StorageFile> file = StorageFile::open(path, mode);
   if (!file) return file.error();
   if (file->size() < sizeof(PackHeader) + sizeof(PackTail)) {
     return {ErrorCode::kTruncated, static_cast<std::int64_t>(file->size())};
   }
-  // The front comes while we look at the end; a robot soon needs the chunks there.
-  file->read_ahead(0, mode == ReadMode::kMapped || mode == ReadMode::kBuffered
-                          ? std::min(file->size(), kUsualWindowBytes)
-                          : sizeof(PackHeader));
+  // The end first, which is looked at first; a short file in one request.
+  const std::uint64_t end_bytes = std::min<std::uint64_t>(file->size(), kUsualIndexBytes);
+  const bool ahead = mode == ReadMode::kMapped || mode == ReadMode::kBuffered;
+  const std::uint64_t front =
+      std::min({std::max(ahead ? soon : 0, sizeof(PackHeader)), file->size(), kFirstBytes});
+  const bool whole = ahead && file->size() <= kFirstBytes;
+  if (!whole) file->read_ahead(file->size() - end_bytes, end_bytes);
+  file->read_ahead(0, whole ? file->size() : front);
   alignas(8) std::array<std::byte, kUsualIndexBytes> end;
-  const auto last = std::span(end).last(std::min<std::uint64_t>(file->size(), end.size()));
-  if (const auto read = file->read_mapped(file->size() - last.size(), last); !read) {
+  const auto last = std::span(end).last(end_bytes);
+  if (const auto read = file->read_at(file->size() - last.size(), last); !read) {
     return read.error();
   }
   const Result<PackTail> tail = check_tail(last.last<sizeof(PackTail)>(), file->size());
   if (!tail) return tail.error();
   if (expected != nullptr && tail->digest != *expected) return ErrorCode::kMismatch;
   std::array<std::byte, sizeof(PackHeader)> header;
-  if (const auto read = file->read_mapped(0, header); !read) return read.error();
+  if (const auto read = file->read_at(0, header); !read) return read.error();
 
-  PackReader reader(std::move(*file), *tail);
+  PackReader reader(std::move(*file), *tail, front);
   const auto index = std::as_writable_bytes(std::span(reader.words_)).first(tail->index_size);
   if (const std::uint64_t have = last.size() - sizeof(PackTail); index.size() <= have) {
     std::ranges::copy(last.subspan(have - index.size(), index.size()), index.begin());
-  } else if (const auto read = reader.file_.read_mapped(tail->index_offset, index); !read) {
+  } else if (const auto read = reader.file_.read_at(tail->index_offset, index); !read) {
     return read.error();
   }
   const Result<const fb::PackIndex*> checked = check_index(header, index, *tail);

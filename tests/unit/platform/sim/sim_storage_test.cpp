@@ -24,7 +24,7 @@ TEST(SimStorage, FailsReadsBehindAnOffsetOfOneFileUntilItIsHealed) {
   const auto file = StorageFile::open(bad.path().string());
   EXPECT_TRUE(file->read_at(4900, out));
   EXPECT_EQ(file->read_at(4901, out).error(), kBroken);
-  EXPECT_EQ(file->read_mapped(8000, out).error(), kBroken);
+  EXPECT_EQ(file->read_at(8000, out).error(), kBroken);
   EXPECT_TRUE(StorageFile::open(good.path().string())->read_at(8000, out));
   disk.heal();
   EXPECT_TRUE(file->read_at(4901, out));
