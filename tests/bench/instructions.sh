@@ -6,7 +6,7 @@
 # call and of how many its settings allow; and that bound is under kMost. Exit code 77 without valgrind.
 set -euo pipefail
 bin=$1 source=$2 db=$3 mission=$4 speed=$5 cycles_wanted=${6:-}
-kMost=5000000  # instructions: half of the period of 10 ms at one instruction a nanosecond
+kMost=2000000  # instructions: a fifth of the period of 10 ms at one instruction a nanosecond
 command -v valgrind >/dev/null || { echo "instructions: no valgrind here"; exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
