@@ -66,7 +66,7 @@ drive() {  # NAME LIMIT SPEED SECONDS alone|readers|neighbour
     companion=$!
   fi
   if ((stop > 0)); then (sleep "$stop" && kill -TERM $pid 2>/dev/null) & fi
-  wait $pid || code=$?
+  wait $pid 2>/dev/null || code=$?  # the shell tells of a killed child there
   echo $code >"$run/code"
   wait $watch || true
   if [ "$company" = readers ]; then
@@ -106,8 +106,9 @@ judge() {  # NAME LIMIT
   jq -e ".most_resident_ever <= $2 and .share.most <= $2 and .locked.most <= $2" "$run/watch.json" >/dev/null ||
     fail "$1: more than the limit of $2 bytes: $(cat "$run/watch.json")"
   jq -e '.locked.least == .locked.most' "$run/watch.json" >/dev/null || fail "$1: locked memory is not constant"
-  jq -e '.resident.samples >= 500 * .seconds and .share.samples >= 0.5 * .seconds - 1' "$run/watch.json" >/dev/null ||
-    fail "$1: looked at less than 500 times a second: $(cat "$run/watch.json")"
+  # The newest 256 looks are not counted: the process may be about to end.
+  jq -e '.resident.samples + 256 >= 900 * .seconds and .share.samples >= 0.5 * .seconds - 1' "$run/watch.json" >/dev/null ||
+    fail "$1: looked at less than 900 times a second: $(cat "$run/watch.json")"
   if [ -f "$run/readers.json" ]; then
     [ ! -f "$run/readers_failed" ] || fail "$1: $(cat "$run/readers.json" "$run/readers.txt")"
     printf '%-22s %s\n' "" "$(of "$1/readers.json" '"\(.readers) readers: \(.good) good reads, \(.expired) expired, \(.damaged) damaged, \(.leases) leases"')"
