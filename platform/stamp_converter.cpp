@@ -14,7 +14,7 @@ constexpr std::int64_t kLongestDelay_ns = 20'000'000;
 
 void StampConverter::restart(std::int64_t after_ns) noexcept {
   after_ns_ = after_ns;
-  has_older_ = false;
+  older_offset_ns_ = offset_ns_;
 }
 
 void StampConverter::read_between(std::int64_t began_ns, std::int64_t ended_ns,
@@ -30,14 +30,13 @@ std::int64_t StampConverter::monotonic_of(std::int64_t realtime_ns) const noexce
   };
   const std::int64_t by_newest_ns = realtime_ns - offset_ns_;
   const std::int64_t by_older_ns = realtime_ns - older_offset_ns_;
-  const bool older = !fits(by_newest_ns) && has_older_ && fits(by_older_ns);
+  const bool older = !fits(by_newest_ns) && fits(by_older_ns);
   return std::clamp(older ? by_older_ns : by_newest_ns, std::min(after_ns_, ended_ns_), ended_ns_);
 }
 
 void StampConverter::emptied() noexcept {
   after_ns_ = began_ns_;
   older_offset_ns_ = offset_ns_;
-  has_older_ = true;
 }
 
 std::int64_t HardwareStamps::monotonic_of(std::int64_t hardware_ns,

@@ -13,11 +13,14 @@ namespace zonepack {
 // Real-time: a few additions.
 class StampConverter {
  public:
-  // Nothing that is converted from now on arrived before after_ns.
+  // The offset (CLOCK_REALTIME minus CLOCK_MONOTONIC) before anything can wait in the queue.
+  explicit StampConverter(std::int64_t offset_ns) noexcept : offset_ns_(offset_ns) {}
+
+  // Nothing that is converted from now on arrived before after_ns: another queue.
   void restart(std::int64_t after_ns) noexcept;
 
   // Before converting what a reading gave: when it began and ended by CLOCK_MONOTONIC, and the
-  // offset (CLOCK_REALTIME minus CLOCK_MONOTONIC) at its end.
+  // offset at its end.
   void read_between(std::int64_t began_ns, std::int64_t ended_ns, std::int64_t offset_ns) noexcept;
 
   std::int64_t monotonic_of(std::int64_t realtime_ns) const noexcept;
@@ -29,9 +32,8 @@ class StampConverter {
   std::int64_t after_ns_ = 0;
   std::int64_t began_ns_ = 0;
   std::int64_t ended_ns_ = 0;
-  std::int64_t offset_ns_ = 0;
-  std::int64_t older_offset_ns_ = 0;  // when the queue was last empty
-  bool has_older_ = false;
+  std::int64_t offset_ns_;
+  std::int64_t older_offset_ns_ = offset_ns_;  // when the queue was last empty
 };
 
 // Places the stamps of a controller's own clock, which starts anywhere and drifts, on

@@ -40,7 +40,7 @@ class Bus final : public SocketCanBus {
   SocketCanKeeper keeper_;
   Descriptor socket_;
   CanBusStatus status_;
-  StampConverter stamps_;
+  StampConverter stamps_{clock_offset_ns()};
   HardwareStamps hardware_;
   std::uint32_t dropped_by_socket_ = 0;
   bool had_socket_ = false;

@@ -29,6 +29,7 @@ set(zonepack_alone
   tests/unit/odometry/canopen_watch_test.cpp
   tests/unit/odometry/pose_filter_test.cpp
   tests/unit/odometry/wheel_odometry_test.cpp
+  tests/unit/pack_format/checksum_test.cpp
   tests/unit/packer/sources/rtabmap_blobs_test.cpp
   tests/unit/packer/sources/zlib_blob_test.cpp
   tests/unit/packer/zones/split_test.cpp

@@ -22,7 +22,7 @@ do_cross() {  # ARCH
 # armhf's zoned for the comparison of decisions. All packages and units are left to `cross`, all boots to `system`.
 test_cross() {
   local units=(pack_format zones odometry)
-  cross_build arm64 zoned zonectl gpio_line_contract "${units[@]/#/test_}"
+  cross_build arm64 zoned zonectl "${device_programs[@]}" "${units[@]/#/test_}"
   stage "tests: arm64 units of the robot under qemu-user"
   ctest --preset arm64 -j "$(nproc)" -R "^($(IFS='|' && echo "${units[*]}"))/"
   make_packages runtime

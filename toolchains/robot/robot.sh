@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Sourced by toolchains/run: the virtual robot, a QEMU machine with Debian's kernel and our package.
 
+device_programs=(gpio_line_contract can_bus_contract can_frames)  # run there, on lines and buses of a kernel
+
 set_flavour() {  # arm64|armhf|rt-arm64: sets arch, flavour (Debian's name of the kernel)
   case $1 in
     arm64 | rt-arm64) flavour=$1; use_arch arm64 ;;
@@ -21,7 +23,7 @@ make_guest() {
   cp tests/system/guest/*.sh "$payload/tests/"
   cp -r tests/data/scenario1_loop "$payload/data/"
   mkdir "$payload/bin"
-  cp build/"$arch"/bin/gpio_line_contract "$payload/bin/"
+  cp "${device_programs[@]/#/build/$arch/bin/}" "$payload/bin/"
   local host=build/ci/bin
   build_map() {  # FOLDER PAYLOAD
     "$host/zonepack" build --db tests/data/hospital-small.db --zones tests/data/zones.geojson --out "$payload/$1" \
@@ -79,7 +81,7 @@ prepare_robot() {  # arm64|armhf|rt-arm64
   set_flavour "$1" || exit 2
   ready
   build ci --target zonepack zoned
-  cross_build "$arch" zoned zonectl gpio_line_contract
+  cross_build "$arch" zoned zonectl "${device_programs[@]}"
   toolchains/cross/packages.sh "$arch" runtime
   make_guest
 }

@@ -2,6 +2,7 @@
 # boot: virtual-time controllers-fd
 # The same with two CAN FD controllers (CTU CAN FD): the drive comes in FD frames with a fast data phase.
 . /payload/tests/lib.sh
+can_contract can0,can1
 for bus in can0 can1; do
   ip link set $bus type can bitrate 500000 dbitrate 2000000 fd on
   ip link set $bus txqueuelen 200 up

@@ -3,6 +3,7 @@
 # Two classic controllers (SJA1000) with their own driver: frames arrive whole and in order; a drive that one sends
 # reaches zoned through the other; and it is told when its controller goes down.
 . /payload/tests/lib.sh
+can_contract can0,can1
 for bus in can0 can1; do
   ip link set $bus type can bitrate 500000
   ip link set $bus txqueuelen 200 up

@@ -107,6 +107,12 @@ send_hundred() {  # what stands between id and data in candump's logs: "#", or "
   cut -d' ' -f3 got | sed 's/##./##/' | cmp - sent || fail "the frames differ"
 }
 
+# What every CAN bus must hold, on interfaces of this kernel: "NAME", or "NAME,OTHER" for two controllers on one bus.
+can_contract() {
+  ZONEPACK_CAN_INTERFACES=$1 /payload/bin/can_bus_contract --gtest_brief=1 >told 2>&1 || fail "the contract is broken: $(cat told)"
+  grep PASSED told
+}
+
 odometers() { grep -c ' 311#' "$1"; }  # LOG: frames that the settings let zoned take
 
 centiseconds() {  # since power-on

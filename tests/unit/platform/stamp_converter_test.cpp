@@ -12,7 +12,7 @@ constexpr std::int64_t kHour = 3'600'000 * kMs;
 
 // A queue that was empty at 100 ms and is read at 110 ms.
 StampConverter read_at_110(std::int64_t offset_ns) {
-  StampConverter stamps;
+  StampConverter stamps(kOffset);
   stamps.restart(0);
   stamps.read_between(100 * kMs, 100 * kMs, kOffset);
   stamps.emptied();
@@ -27,6 +27,16 @@ TEST(StampConverter, TakesTheOffsetOfTheClocksAway) {
 TEST(StampConverter, IsUnharmedByAWallClockSetBetweenArrivalAndReading) {
   for (const std::int64_t step : {kHour, -kHour, 1000 * kMs, -1000 * kMs, 30 * kMs, -30 * kMs}) {
     const StampConverter stamps = read_at_110(kOffset + step);
+    EXPECT_EQ(stamps.monotonic_of(kOffset + 104 * kMs), 104 * kMs) << "before " << step;
+    EXPECT_EQ(stamps.monotonic_of(kOffset + step + 107 * kMs), 107 * kMs) << "after " << step;
+  }
+}
+
+TEST(StampConverter, IsUnharmedByAWallClockSetBeforeTheFirstReading) {
+  for (const std::int64_t step : {kHour, -kHour}) {
+    StampConverter stamps(kOffset);
+    stamps.restart(0);
+    stamps.read_between(110 * kMs, 110 * kMs, kOffset + step);
     EXPECT_EQ(stamps.monotonic_of(kOffset + 104 * kMs), 104 * kMs) << "before " << step;
     EXPECT_EQ(stamps.monotonic_of(kOffset + step + 107 * kMs), 107 * kMs) << "after " << step;
   }
