@@ -14,12 +14,13 @@ namespace zonepack {
 // A file that appears whole or not at all: written beside its final name as NAME.part-PID-N, then
 // fsync, rename, fsync of the folder. Dropped without commit (an error, an exception), the part is
 // removed and what stood under the final name is untouched. A killed process leaves its part
-// behind; is_part_name() recognises one.
+// behind; is_part_name() recognises one. A symbolic link stays, and its target is replaced. What is
+// no regular file, and all in /dev (/dev/null, /dev/stdout, a pipe), is written in place instead.
 //
 // Errors: kIo with errno. Threads: one at a time per object. Not for the control thread.
 class AtomicFile {
  public:
-  // Opens the part beside `path`; the folder must exist.
+  // Opens the part beside `path`, or what is written in place; the folder must exist.
   static Result<AtomicFile> create(std::string path);
 
   AtomicFile(AtomicFile&& other) noexcept;
@@ -30,7 +31,8 @@ class AtomicFile {
   Result<void> write(std::span<const std::byte> bytes) noexcept;
   Result<void> write(std::string_view text) noexcept;
 
-  // Makes the file durable under the name given to create(). Once, and nothing after it.
+  // Makes the file durable under the name given to create(). Once, and nothing after it. What is
+  // written in place is only closed.
   // If only the fsync of the folder fails, the file is in place but a power cut may undo the
   // rename.
   Result<void> commit();
@@ -47,7 +49,7 @@ class AtomicFile {
 
   int fd_;
   std::string path_;
-  std::string part_;  // empty once committed or moved from
+  std::string part_;  // empty once committed or moved from, and for what is written in place
 };
 
 // Whether a file name (without folder) is a part that a killed process may have left.

@@ -2,11 +2,14 @@
 #include "platform/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
+#include <memory>
 #include <utility>
 
 namespace zonepack {
@@ -28,6 +31,22 @@ std::string folder_of(const std::string& path) {
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
+// Replacing a device or a pipe by a file would take it from everyone; as root, /dev/null too.
+bool is_written_in_place(const std::string& path) noexcept {
+  struct stat status;
+  if (::stat(path.c_str(), &status) != 0) return false;
+  return path.starts_with("/dev/") || !(S_ISREG(status.st_mode) || S_ISDIR(status.st_mode));
+}
+
+// Where a link leads, so that the link stays.
+std::string behind_links(std::string path) {
+  struct stat status;
+  if (::lstat(path.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return path;
+  const std::unique_ptr<char, decltype(&std::free)> real(::realpath(path.c_str(), nullptr),
+                                                         &std::free);
+  return real ? std::string(real.get()) : path;
+}
+
 Result<void> sync_folder(const std::string& folder) noexcept {
   const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (fd < 0) return last_error();
@@ -44,6 +63,12 @@ std::size_t skip_digits(std::string_view text, std::size_t at) noexcept {
 }  // namespace
 
 Result<AtomicFile> AtomicFile::create(std::string path) {
+  if (is_written_in_place(path)) {
+    const int fd = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOCTTY);
+    if (fd < 0) return last_error();
+    return AtomicFile(fd, std::move(path), {});
+  }
+  path = behind_links(std::move(path));
   std::string part = part_name(path);
   const int fd = ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (fd < 0) return last_error();
@@ -79,8 +104,10 @@ Result<void> AtomicFile::commit() { return commit_as(path_); }
 
 Result<void> AtomicFile::commit_as(const std::string& path) {
   ZP_REQUIRE(fd_ >= 0);
-  if (::fsync(fd_) != 0) return last_error();
+  const bool in_place = part_.empty();
+  if (!in_place && ::fsync(fd_) != 0) return last_error();
   if (::close(std::exchange(fd_, -1)) != 0) return last_error();
+  if (in_place) return {};
   if (std::rename(part_.c_str(), path.c_str()) != 0) return last_error();
   part_.clear();
   return sync_folder(folder_of(path));

@@ -50,6 +50,30 @@ TEST_F(AtomicFileTest, AppearsOnlyWhenCommitted) {
   EXPECT_EQ(read(path("map")), "one two");
 }
 
+TEST_F(AtomicFileTest, WritesAPipeInPlace) {
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+  const int reader = open(path("pipe").c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_TRUE(write_file_atomically(path("pipe"), "words").ok());
+  char got[8];
+  EXPECT_EQ(::read(reader, got, sizeof got), 5);
+  close(reader);
+  EXPECT_TRUE(fs::is_fifo(path("pipe")));
+  EXPECT_EQ(files(), std::set<std::string>{"pipe"});
+}
+
+TEST_F(AtomicFileTest, LeavesDevicesWhatTheyAre) {
+  ASSERT_TRUE(write_file_atomically("/dev/null", "words").ok());
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(AtomicFileTest, ReplacesWhatALinkLeadsToAndKeepsTheLink) {
+  ASSERT_TRUE(write_file_atomically(path("file"), "old").ok());
+  fs::create_symlink("file", path("link"));
+  ASSERT_TRUE(write_file_atomically(path("link"), "new").ok());
+  EXPECT_TRUE(fs::is_symlink(path("link")));
+  EXPECT_EQ(read(path("file")), "new");
+}
+
 TEST_F(AtomicFileTest, DroppedWithoutCommitLeavesTheOldFileAndNoPart) {
   ASSERT_TRUE(write_file_atomically(path("map"), "old").ok());
   {
