@@ -76,9 +76,13 @@ in_cgroup() {
 }
 
 # A chip of simulated lines. Sets chip (its name) and lines: $lines/sim_gpio3/value tells what line 3 is driven to,
-# "pull-up" or "pull-down" written to $lines/sim_gpio3/pull drives it from outside.
+# "pull-up" or "pull-down" written to $lines/sim_gpio3/pull drives it from outside. New, whatever a test before left.
 gpio_sim() {  # LABEL COUNT
   sim=/sys/kernel/config/gpio-sim/$1
+  if [ -e "$sim" ]; then
+    echo 0 >"$sim/live"
+    rmdir "$sim/bank0" "$sim"
+  fi
   mkdir -p "$sim/bank0"
   echo "$2" >"$sim/bank0/num_lines"
   echo "$1" >"$sim/bank0/label"
