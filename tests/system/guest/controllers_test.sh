@@ -5,6 +5,7 @@
 . /payload/tests/lib.sh
 can_contract can0,can1
 for bus in can0 can1; do
+  ip link set $bus down
   ip link set $bus type can bitrate 500000
   ip link set $bus txqueuelen 200 up
 done
