@@ -20,7 +20,7 @@ wait_for() {
   tries=0
   until "$@"; do
     tries=$((tries + 1))
-    [ $tries -le 200 ] || fail "not within 10 s: $*"
+    [ $tries -le 200 ] || fail "not within 10 s: $*; $(cat zoned.log 2>&1)"
     sleep 0.05
   done
 }
