@@ -101,12 +101,16 @@ void OutputLines::follow(const LiveStatus& status, const LoadEnd& load,
   if (cycles_ == 0) return;
   const bool stuck = now_ns - moved_ns_ > stuck_ns_;
   const bool ready = status.state.map_ready && !stuck;
-  bool told = true;
-  if (Line* const line = find(OutputKind::kMapReady)) told = put(*line, ready, now_ns);
+  const auto tell = [this, now_ns](OutputKind kind, bool active) {
+    Line* const line = find(kind);
+    return line == nullptr || put(*line, active, now_ns);
+  };
+  // map_ready falls first and rises last: nobody sees it beside a fault that is over, or comes.
+  bool told = ready || tell(OutputKind::kMapReady, false);
+  const bool fault_told = tell(OutputKind::kFault, stuck || is_fault(status));
+  if (ready) told = tell(OutputKind::kMapReady, true);
   if (told) follow_latency(status, load, ready, now_ns);
-  if (Line* const line = find(OutputKind::kFault)) {
-    told = put(*line, stuck || is_fault(status), now_ns) && told;
-  }
+  told = told && fault_told;
   Line* const heartbeat = find(OutputKind::kHeartbeat);
   if (heartbeat == nullptr || !told || cycles_ == toggled_at_ ||
       now_ns - toggled_ns_ < half_wave_ns_) {

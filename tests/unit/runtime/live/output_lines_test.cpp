@@ -190,6 +190,20 @@ TEST_F(OutputLinesTest, MeasureFromALoadThatMapReadyWaitedForToItsLine) {
   EXPECT_EQ(board.ready_latency.load().count, 1u);
 }
 
+TEST_F(OutputLinesTest, MapReadyRisesOnlyAfterTheFaultThatIsOver) {
+  chips.add_chip("slow", 1);
+  gpio.fault = OutputLine{"slow", "0", true};
+  opened();
+  cycle(false);
+  chips.hang("slow", true);
+  std::thread clears([this] { cycle(true); });
+  while (chips.hanging() == 0) std::this_thread::yield();
+  EXPECT_FALSE(map_ready());
+  chips.hang("slow", false);
+  clears.join();
+  EXPECT_TRUE(map_ready());
+}
+
 // A chip behind a bus that hangs: the thread waits in it, while the control thread's cycles, the
 // status that it leaves and everything else go on.
 TEST_F(OutputLinesTest, ALineThatHangsDelaysNobodyElse) {
