@@ -21,6 +21,7 @@ as_unit() {  # KEY OPTION...
 # says), its check and its command. Sets pid; zoned's words come in zoned.log.
 start_unit() {  # BUDGET_BYTES OPTION...
   group=/sys/fs/cgroup/zoned
+  rm -rf /run/zoned  # as RuntimeDirectory= does when a unit stops
   mkdir -p /etc/zonepack /run/zoned "$state" /data/out "$group"
   echo "zoned:x:$user:$user::/:/bin/sh" >/etc/passwd
   chown "$user:$user" /run/zoned "$state" /data/out
