@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # usage: instructions.sh BIN SOURCE DB MISSION SPEED [CYCLES]: a mission is driven live and recorded, while readers take
 # leases and zonectl pins; then the instructions of every cycle of the recording, or of the first CYCLES, are counted by
-# callgrind, twice. Judged: the same numbers both times; at most 50,000 instructions at p99.99; the worst cycle obeys a bound made of each operation's worst
-# call and of how many its settings allow; and that bound is under kMost. Exit code 77 without valgrind.
+# callgrind, twice. Judged: the same numbers both times; at most 50,000 instructions at p99.99; the worst cycle obeys a
+# bound made of each operation's worst call and of how many its settings allow; and that bound is under kMost. Exit code
+# 77 without valgrind.
 set -euo pipefail
 bin=$1 source=$2 db=$3 mission=$4 speed=$5 cycles_wanted=${6:-}
 kMost=2000000  # instructions: a fifth of the period of 10 ms at one instruction a nanosecond
