@@ -22,6 +22,7 @@ pid=$!
 wait_for serving
 zonectl events >events &
 send_still &
+sending=$!
 seen=0
 wait_for moving_on
 status_is can_up true || fail "the bus counts as down"
@@ -79,4 +80,6 @@ vcan_up can0
 seen=0
 wait_for moving_on
 stop_zoned
+kill $sending
+ip link del can0  # ends its cangen
 echo "sigma $((before / 1000)) to $((after / 1000)) mm in 4 s without odometry; down, gone, bus-off: each said and left behind"
