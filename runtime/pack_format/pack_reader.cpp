@@ -22,8 +22,8 @@ Result<PackReader> PackReader::open(const std::string& path, const Digest32* exp
   // The end first, which is looked at first; a short file in one request.
   const std::uint64_t end_bytes = std::min<std::uint64_t>(file->size(), kUsualIndexBytes);
   const bool ahead = mode == ReadMode::kMapped || mode == ReadMode::kBuffered;
-  const std::uint64_t front =
-      std::min({std::max(ahead ? soon : 0, sizeof(PackHeader)), file->size(), kFirstBytes});
+  const std::uint64_t front = std::min(
+      {std::max<std::uint64_t>(ahead ? soon : 0, sizeof(PackHeader)), file->size(), kFirstBytes});
   const bool whole = ahead && file->size() <= kFirstBytes;
   if (!whole) file->read_ahead(file->size() - end_bytes, end_bytes);
   file->read_ahead(0, whole ? file->size() : front);
