@@ -3,6 +3,9 @@
 // another file takes the place of this one. Nothing else includes <gpiod.h>.
 #include <dirent.h>
 #include <gpiod.h>
+#include <linux/gpio.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -139,23 +142,24 @@ class Input final : public GpioInput {
     return std::optional(GpioEdge{monotonic_ns(), level == 1});
   }
 
+  // As the kernel tells them (linux/gpio.h). libgpiod's own call fills a timespec, which a library
+  // of a 32-bit Debian has shorter than a program built with 64-bit times.
   Result<void> fill() noexcept {
-    const timespec no_wait{};
-    const int waiting = gpiod_line_event_wait(line_.line, &no_wait);
     next_ = read_ = 0;
-    if (waiting < 0) return last_error();
-    if (waiting == 0) return {};
-    std::array<gpiod_line_event, kKernelEvents> raw{};
-    const int count = gpiod_line_event_read_multiple(line_.line, raw.data(), raw.size());
-    if (count < 0) return last_error();
-    read_ = static_cast<std::size_t>(count);
+    pollfd waiting{gpiod_line_event_get_fd(line_.line), POLLIN | POLLPRI, 0};
+    const int ready = ::poll(&waiting, 1, 0);
+    if (ready < 0) return last_error();
+    if (ready == 0) return {};
+    std::array<gpioevent_data, kKernelEvents> raw{};
+    const ::ssize_t got = ::read(waiting.fd, raw.data(), sizeof raw);
+    if (got < 0) return last_error();
+    read_ = static_cast<std::size_t>(got) / sizeof raw[0];
     look_again_ |= read_ == raw.size();
     const std::int64_t now_ns = monotonic_ns();
     for (std::size_t i = 0; i < read_; ++i) {
-      const std::int64_t stamp_ns =
-          std::int64_t{raw[i].ts.tv_sec} * 1'000'000'000 + raw[i].ts.tv_nsec;
+      const auto stamp_ns = static_cast<std::int64_t>(raw[i].timestamp);
       // Kernels before 5.7 stamp by the wall clock, which is far ahead.
-      events_[i] = {std::min(stamp_ns, now_ns), raw[i].event_type == GPIOD_LINE_EVENT_RISING_EDGE};
+      events_[i] = {std::min(stamp_ns, now_ns), raw[i].id == GPIOEVENT_EVENT_RISING_EDGE};
     }
     return {};
   }
