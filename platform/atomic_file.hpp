@@ -15,7 +15,8 @@ namespace zonepack {
 // fsync, rename, fsync of the folder. Dropped without commit (an error, an exception), the part is
 // removed and what stood under the final name is untouched. A killed process leaves its part
 // behind; is_part_name() recognises one. A symbolic link stays, and its target is replaced. What is
-// no regular file, and all in /dev (/dev/null, /dev/stdout, a pipe), is written in place instead.
+// no regular file (a device, a pipe), and /dev/stdout, /dev/stderr and /dev/fd/N whatever they lead
+// to, is written in place instead.
 //
 // Errors: kIo with errno. Threads: one at a time per object. Not for the control thread.
 class AtomicFile {

@@ -2,18 +2,19 @@
 #include "platform/atomic_file.hpp"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
-#include <memory>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace zonepack {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::string_view kPartMark = ".part-";
 
@@ -32,19 +33,20 @@ std::string folder_of(const std::string& path) {
 }
 
 // Replacing a device or a pipe by a file would take it from everyone; as root, /dev/null too.
-bool is_written_in_place(const std::string& path) noexcept {
-  struct stat status;
-  if (::stat(path.c_str(), &status) != 0) return false;
-  return path.starts_with("/dev/") || !(S_ISREG(status.st_mode) || S_ISDIR(status.st_mode));
+bool is_written_in_place(const std::string& path) {
+  std::error_code unknown;
+  const fs::file_status status = fs::status(path, unknown);
+  if (!fs::exists(status)) return false;
+  const bool ours = path == "/dev/stdout" || path == "/dev/stderr" || path.starts_with("/dev/fd/");
+  return ours || !(fs::is_regular_file(status) || fs::is_directory(status));
 }
 
 // Where a link leads, so that the link stays.
 std::string behind_links(std::string path) {
-  struct stat status;
-  if (::lstat(path.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return path;
-  const std::unique_ptr<char, decltype(&std::free)> real(::realpath(path.c_str(), nullptr),
-                                                         &std::free);
-  return real ? std::string(real.get()) : path;
+  std::error_code failed;
+  if (!fs::is_symlink(path, failed)) return path;
+  const fs::path target = fs::canonical(path, failed);
+  return failed ? path : target.string();
 }
 
 Result<void> sync_folder(const std::string& folder) noexcept {

@@ -66,6 +66,15 @@ TEST_F(AtomicFileTest, LeavesDevicesWhatTheyAre) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
+TEST_F(AtomicFileTest, ReplacesFilesOfAFileSystemBelowDev) {
+  if (access("/dev/shm", W_OK) != 0) GTEST_SKIP() << "/dev/shm cannot be written here";
+  const std::string file = "/dev/shm/zonepack-atomic-" + std::to_string(getpid());
+  ASSERT_TRUE(write_file_atomically(file, "old").ok());
+  ASSERT_TRUE(write_file_atomically(file, "new").ok());
+  EXPECT_EQ(read(file), "new");
+  fs::remove(file);
+}
+
 TEST_F(AtomicFileTest, ReplacesWhatALinkLeadsToAndKeepsTheLink) {
   ASSERT_TRUE(write_file_atomically(path("file"), "old").ok());
   fs::create_symlink("file", path("link"));
