@@ -55,8 +55,8 @@ class StorageFile {
   std::uint64_t size() const noexcept { return size_; }  // when it was opened
   ReadMode mode() const noexcept { return mode_; }       // the one in use
 
-  // Fills all of `out` from `offset`, or fails. No allocation. Through mapped windows in kMapped and
-  // kDirect, whose own reads need aligned buffers.
+  // Fills all of `out` from `offset`, or fails. No allocation. Through mapped windows in kMapped
+  // and kDirect, whose own reads need aligned buffers.
   Result<void> read_at(std::uint64_t offset, std::span<std::byte> out) const noexcept;
 
   // The longest window that read_window() brings into this buffer, wherever it starts: the buffer
@@ -67,10 +67,15 @@ class StorageFile {
   Result<std::span<const std::byte>> read_window(std::uint64_t offset, std::size_t size,
                                                  std::span<std::byte> buffer) noexcept;
 
+  // Whether windows come through the page cache, a little at a time: read_ahead() serves them.
+  bool reads_ahead() const noexcept {
+    return mode_ == ReadMode::kMapped || mode_ == ReadMode::kBuffered;
+  }
+
   // Starts to bring these bytes into the page cache, without waiting: for what is soon read by
-  // read_at(), or by windows of kMapped or kBuffered, in rising order. False when kMostRanges wait to be read.
-  // The caller keeps to kMostAhead altogether. Closing waits for what nobody read, because pages on
-  // their way cannot be dropped.
+  // read_at(), or by windows that reads_ahead() tells of, in rising order. False when kMostRanges
+  // wait to be read. The caller keeps to kMostAhead altogether. Closing waits for what nobody read,
+  // because pages on their way cannot be dropped.
   static constexpr ByteCount kMostAhead = 1 * kMiB;
   static constexpr std::size_t kMostRanges = 16;
   bool read_ahead(std::uint64_t offset, std::uint64_t size) noexcept;

@@ -22,7 +22,8 @@ Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, ReadMode mode,
 Result<ZoneLoad> ZoneLoad::begin(const Catalog& catalog, ZoneId zone,
                                  std::span<std::byte* const> slots,
                                  std::span<std::byte> read_buffer, ReadMode mode) {
-  // The chunks of the usual payload come first in a pack, and are stored no longer than they decode.
+  // The chunks of the usual payload come first in a pack, and are stored no longer than they
+  // decode.
   const std::uint64_t soon = std::uint64_t{catalog.zones[zone].slots} * kSlotBytes;
   Result<PackReader> pack = open_pack(catalog, zone, mode, soon);
   if (!pack) return pack.error();
@@ -52,7 +53,7 @@ ZoneLoad::ZoneLoad(PackReader pack, PayloadMask mask, std::span<std::byte* const
 // Asks for wanted chunks some way ahead of the window, so that the disk works while we decode.
 void ZoneLoad::ask_ahead() {
   StorageFile& file = pack_.file();
-  if (file.mode() != ReadMode::kMapped && file.mode() != ReadMode::kBuffered) return;
+  if (!file.reads_ahead()) return;
   constexpr ByteCount kMost = StorageFile::kMostAhead;
   if (ahead_ < next_) ahead_ = next_;
   if (ahead_bytes_ >= kMost / 2) return;

@@ -21,12 +21,13 @@ Result<PackReader> PackReader::open(const std::string& path, const Digest32* exp
   }
   // The end first, which is looked at first; a short file in one request.
   const std::uint64_t end_bytes = std::min<std::uint64_t>(file->size(), kUsualIndexBytes);
-  const bool ahead = mode == ReadMode::kMapped || mode == ReadMode::kBuffered;
-  const std::uint64_t front = std::min(
-      {std::max<std::uint64_t>(ahead ? soon : 0, sizeof(PackHeader)), file->size(), kFirstBytes});
-  const bool whole = ahead && file->size() <= kFirstBytes;
-  if (!whole) file->read_ahead(file->size() - end_bytes, end_bytes);
-  file->read_ahead(0, whole ? file->size() : front);
+  if (!file->reads_ahead()) soon = 0;
+  std::uint64_t front = file->size();
+  if (soon == 0 || file->size() > kFirstBytes) {
+    front = std::clamp<std::uint64_t>(soon, sizeof(PackHeader), std::min(front, kFirstBytes));
+    file->read_ahead(file->size() - end_bytes, end_bytes);
+  }
+  file->read_ahead(0, front);
   alignas(8) std::array<std::byte, kUsualIndexBytes> end;
   const auto last = std::span(end).last(end_bytes);
   if (const auto read = file->read_at(file->size() - last.size(), last); !read) {

@@ -20,9 +20,9 @@ namespace zonepack {
 // our threads, the control thread's too.
 class PackReader {
  public:
-  // With `expected`, kMismatch for a whole pack that is another than the one asked for. `soon`: bytes
-  // from the front that the caller reads next by windows of kMapped or kBuffered; they begin to come
-  // together with the index (StorageFile::read_ahead), as many as front_asked() tells.
+  // With `expected`, kMismatch for a whole pack that is another than the one asked for. `soon`:
+  // bytes from the front that the caller reads next by windows of kMapped or kBuffered; they begin
+  // to come together with the index (StorageFile::read_ahead), as many as front_asked() tells.
   static Result<PackReader> open(const std::string& path, const Digest32* expected = nullptr,
                                  ReadMode mode = ReadMode::kCached, std::uint64_t soon = 0);
 

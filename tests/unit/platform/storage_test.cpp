@@ -61,6 +61,9 @@ TEST_P(Storage, FillsAnySpanFromAnyOffset) {
   std::vector<std::byte> out(2'999'000);
   ASSERT_TRUE(opened.read_at(1001, out));
   EXPECT_TRUE(are_numbers(out, 1001));
+  std::ranges::fill(out, std::byte{});
+  ASSERT_TRUE(opened.read_at(999, out));
+  EXPECT_TRUE(are_numbers(out, 999));
   const auto whole = read_file(file.path().string(), 3'000'001, GetParam());
   ASSERT_TRUE(whole);
   EXPECT_TRUE(are_numbers(*whole, 0));
