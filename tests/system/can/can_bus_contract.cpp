@@ -188,6 +188,7 @@ TEST(SocketCan, StampsAreUnharmedByAWallClockThatIsSet) {
   if (rigs().empty()) GTEST_SKIP();
   for (const std::int64_t step_s : {3600, -3600}) {
     KernelRig rig("vcan0", "vcan0");
+    ASSERT_TRUE(rig.ready());
     CanFrame sent;
     sent.id = 0x123;
     const std::int64_t before_ns = rig.now_ns();

@@ -2,7 +2,8 @@
 # boot: virtual-time controllers-fd
 # The same with two CAN FD controllers (CTU CAN FD): the drive comes in FD frames with a fast data phase.
 . /payload/tests/lib.sh
-can_contract can0,can1
+export ZONEPACK_CAN_INTERFACES=can0,can1
+hold_contract can_bus_contract "error frames cannot be sent there" "it cannot be removed"
 for bus in can0 can1; do
   ip link set $bus down
   ip link set $bus type can bitrate 500000 dbitrate 2000000 fd on
@@ -13,4 +14,4 @@ drive_between_controllers "#1"
 ip link set can0 down
 wait_for said "can0: down"
 stop_zoned
-echo "100 frames, then $frames of a drive to zoned; $entered zones entered as on the host"
+echo "$contract 100 frames, then $frames of a drive to zoned; $entered zones entered as on the host"

@@ -3,7 +3,8 @@
 # Two classic controllers (SJA1000) with their own driver: frames arrive whole and in order; a drive that one sends
 # reaches zoned through the other; and it is told when its controller goes down.
 . /payload/tests/lib.sh
-can_contract can0,can1
+export ZONEPACK_CAN_INTERFACES=can0,can1
+hold_contract can_bus_contract "error frames cannot be sent there" "it cannot be removed"
 for bus in can0 can1; do
   ip link set $bus down
   ip link set $bus type can bitrate 500000
@@ -14,4 +15,4 @@ drive_between_controllers ""
 ip link set can0 down
 wait_for said "can0: down"
 stop_zoned
-echo "100 frames, then $frames of a drive to zoned; $entered zones entered as on the host"
+echo "$contract 100 frames, then $frames of a drive to zoned; $entered zones entered as on the host"

@@ -56,7 +56,8 @@ zoned=$!
 "$bin/map_readers" "$ZONED_SOCKET" 1 >"$work/readers.json" 2>&1 &
 readers=$!
 
-look() {  # resident KiB, locked KiB, threads, descriptors, files, the flight recorder's segments; by the shell alone, which is quick
+# Resident KiB, locked KiB, threads, descriptors, files, the flight recorder's segments; by the shell alone, which is quick.
+look() {
   local key value rest resident= locked=
   while read -r key value rest; do
     case $key in
@@ -102,6 +103,7 @@ head -n -2 "$work/looks.txt" | awk '
       }
       # Buffers of the threads that write and serve come with their first use.
       slack = i == 1 ? 512 : 0
+      # The recorder's segments: a ring of 8 and the one that replaces the oldest.
       grows = i == 6 ? told[3] > 9 : told[3] > told[1] + slack
       bad += grows
       printf "%-18s %12d %12d %12d%s\n", name[i], told[1], told[2], told[3], grows ? "  GROWS" : ""
