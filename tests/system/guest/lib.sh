@@ -51,7 +51,7 @@ holds() {  # FILE KEY VALUE
   [ "$(value "$1" "$2")" = "$3" ] || fail "$2 is $(value "$1" "$2"), not $3, in $(cat "$1")"
 }
 
-worst() { sed -n "s/.*\"$2\": {.*\"max\": \([0-9.]*\).*/\1/p" "$1"; }  # FILE cycle_us|wakeup_us
+took() { sed -n "s/.*\"$2\": {.*\"$3\": \([0-9.]*\).*/\1/p" "$1"; }  # FILE cycle_us|wakeup_us p50|p99|p9999|max
 
 zones_entered() {  # EVENTS
   sed -n 's/.*"event":"zone_entered","zone":"\([^"]*\)".*/\1/p' "$1"
