@@ -14,7 +14,7 @@ struct ThreadSettings {
   const char* name = "";                 // at most 15 characters, as ps and top show it
   int fifo_priority = 0;                 // SCHED_FIFO 1 to 99; 0: an ordinary thread
   int cpu = -1;                          // the only processor it runs on; -1: any
-  std::size_t stack_bytes = 256 * 1024;  // touched before `body` runs
+  std::size_t stack_bytes = 256 * 1024;  // present before `body` runs
 };
 
 // A thread with a stack of its own size, all of it present from the start. Ownership: joins when
@@ -47,8 +47,9 @@ bool thread_is_realtime() noexcept;
 Result<void> lock_memory_now() noexcept;
 void unlock_memory() noexcept;
 
-// One heap for all threads, never given back or moved, so that locked pages stay where they are.
-void use_one_heap() noexcept;
+// One heap for all threads, never given back or moved, so that locked pages stay where they are;
+// its first bytes are there at once, which costs less than a fault for each page.
+void use_one_heap(std::size_t present_bytes) noexcept;
 
 // What the kernel counted for the calling thread.
 struct ThreadUsage {

@@ -13,11 +13,14 @@
 #include <climits>
 #include <condition_variable>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <utility>
+
+#include "platform/linux/populate.hpp"
 
 namespace zonepack {
 namespace {
@@ -34,11 +37,10 @@ struct Start {
 };
 
 // The stack down to its last pages, but for what the C library keeps at its end.
-void touch_stack(std::size_t bytes) noexcept {
-  constexpr std::size_t kKept = 32 * 1024, kStep = 4096;
+void populate_stack(std::size_t bytes) noexcept {
+  constexpr std::size_t kKept = 32 * 1024;
   if (bytes <= kKept) return;
-  auto* const block = static_cast<volatile char*>(__builtin_alloca(bytes - kKept));
-  for (std::size_t at = 0; at < bytes - kKept; at += kStep) block[at] = 0;
+  populate(static_cast<std::byte*>(__builtin_alloca(bytes - kKept)), bytes - kKept);
 }
 
 int set_up(const Start& start, bool& realtime) noexcept {
@@ -57,7 +59,7 @@ int set_up(const Start& start, bool& realtime) noexcept {
     if (error != 0 && !start.allow_ordinary) return error;
     realtime = error == 0;
   }
-  touch_stack(settings.stack_bytes);
+  populate_stack(settings.stack_bytes);
   return 0;
 }
 
@@ -141,10 +143,13 @@ bool thread_is_realtime() noexcept {
 
 void unlock_memory() noexcept { munlockall(); }
 
-void use_one_heap() noexcept {
+void use_one_heap(std::size_t present_bytes) noexcept {
   mallopt(M_ARENA_MAX, 1);
   mallopt(M_TRIM_THRESHOLD, INT_MAX);
   mallopt(M_MMAP_THRESHOLD, INT_MAX);
+  void* const block = std::malloc(present_bytes);
+  if (block != nullptr) populate(static_cast<std::byte*>(block), present_bytes);
+  std::free(block);
 }
 
 ThreadUsage thread_usage() noexcept {

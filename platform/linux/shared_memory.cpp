@@ -11,12 +11,10 @@
 #include <limits>
 
 #include "platform/base/require.hpp"
+#include "platform/linux/populate.hpp"
 
 #ifndef MFD_NOEXEC_SEAL
 #define MFD_NOEXEC_SEAL 0x0008U  // Linux 6.3
-#endif
-#ifndef MADV_POPULATE_WRITE
-#define MADV_POPULATE_WRITE 23  // Linux 5.14
 #endif
 
 namespace zonepack {
@@ -43,16 +41,6 @@ Result<std::size_t> sealed_size(const Descriptor& file) {
     return ErrorCode::kMismatch;
   }
   return static_cast<std::size_t>(status.st_size);
-}
-
-// Gives this process every page, changing none.
-void populate(std::byte* begin, std::size_t size) noexcept {
-  if (::madvise(begin, size, MADV_POPULATE_WRITE) == 0) return;
-  constexpr std::size_t kStep = 4096;
-  for (std::size_t at = 0; at < size; at += kStep) {
-    auto* const page = const_cast<volatile std::byte*>(begin + at);
-    *page = *page;
-  }
 }
 
 }  // namespace

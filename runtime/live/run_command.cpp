@@ -19,6 +19,8 @@
 namespace zonepack {
 namespace {
 
+constexpr std::size_t kHeapBytes = 2 << 20;  // what a run takes at least, whatever the map
+
 int fail(const std::string& message, int exit_code = 1) {
   std::cerr << "zoned run: " << message << '\n';
   return exit_code;
@@ -68,7 +70,7 @@ int run_live(const RunArguments& arguments) {
     return fail("--corrections and --truth are on the time of a log, which socketcan: has not", 2);
   }
   hold_signals();
-  use_one_heap();
+  use_one_heap(kHeapBytes);
   RunInputs inputs;
   if (const auto fault = read_run_inputs(arguments, inputs)) return fail(*fault);
   std::string fault;
