@@ -40,6 +40,8 @@ make_guest() {
 
 options_of() { sed -n 's/^# boot: //p' "tests/system/guest/$1.sh"; }  # TEST
 
+hindrance_of() { sed -n "s/^# not on $flavour: //p" "tests/system/guest/$1.sh"; }  # TEST: why this kernel cannot run it
+
 guest_tests() {  # [BOOT-OPTIONS]: names of all tests, or of those with these options
   local test
   for test in tests/system/guest/*_test.sh; do
@@ -51,9 +53,12 @@ guest_tests() {  # [BOOT-OPTIONS]: names of all tests, or of those with these op
 # Each test once, those with the same boot options together; prints a line for each. Recordings made there are in
 # build/robot/FLAVOUR/recordings.
 run_guest_tests() {  # [TEST...], all by default
-  local out=build/robot/$flavour boot failed=0
-  local -a tests=("$@")
-  ((${#tests[@]})) || mapfile -t tests < <(guest_tests)
+  local out=build/robot/$flavour boot failed=0 test
+  local -a asked=("$@") tests=()
+  ((${#asked[@]})) || mapfile -t asked < <(guest_tests)
+  for test in "${asked[@]}"; do
+    if [ -n "$(hindrance_of "$test")" ]; then echo "not run: $test: $(hindrance_of "$test")"; else tests+=("$test"); fi
+  done
   rm -rf "$out/recordings"
   mkdir -p "$out/recordings"
   while read -r boot; do

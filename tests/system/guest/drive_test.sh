@@ -2,7 +2,8 @@
 # boot: virtual-time disk
 # Scenario 1 on the bus in its own time: zoned from its package, started as its unit does under memory.max = budget +
 # 16 MiB, is never without its zone, keeps within its budget, and enters the zones that the host's replay enters. A
-# cycle's work takes at most 200 us at p99.99 on this processor of 4 ns an instruction: 50 us where one takes 1 ns.
+# cycle's work takes at most 200 us at p99.99 on this processor of 4 ns an instruction: 50 us where one takes 1 ns; on
+# a 32-bit one, which needs more of them, 300.
 . /payload/tests/lib.sh
 . /payload/tests/unit.sh
 budget=$(cat /payload/budget)
@@ -22,7 +23,9 @@ for key in zone_absent_s budget_violations minor_faults major_faults allocations
   holds $result $key 0
 done
 holds $result can_frames "$(odometers "$run/can0.log")"
-took $result cycle_us p9999 | awk '$1 > 200 { exit 1 }' || fail "p99.99 of a cycle: $(took $result cycle_us p9999) us"
+most_us=200
+[ "$(uname -m)" = aarch64 ] || most_us=300
+took $result cycle_us p9999 | awk "\$1 > $most_us { exit 1 }" || fail "p99.99 of a cycle: $(took $result cycle_us p9999) us"
 for what in max oom oom_kill; do
   grep -q "^$what 0$" $group/memory.events || fail "memory.events: $(cat $group/memory.events)"
 done

@@ -7,8 +7,7 @@ vcan_up vcan0
 vcan_up vcan1
 awk '/^\(/ { split($1, t, /[()]/); if (t[2] < 1718021610) print }' "$run/can0.log" >part
 frames=$(odometers part)
-zoned run --config "$config" --map /payload/map --can socketcan:vcan0 --record-can recorded.log --json result.json \
-  >zoned.log 2>&1 &
+zoned run --config "$config" --map /payload/map --can socketcan:vcan0 --record-can recorded.log >zoned.log 2>&1 &
 pid=$!
 wait_for serving
 candump -L vcan0 >all &
