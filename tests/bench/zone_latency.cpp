@@ -8,7 +8,8 @@
 // pack's pages are dropped.
 //
 //   zone_latency MAP ROUNDS
-// Tells whether the target of 1.5 at p99 is met; exits with 1 when the middle is over it.
+// Tells whether the target of 1.5 at p99 is met, of dd's own p99 and of its middle; exits with 1
+// when the middle is over it.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -116,6 +117,8 @@ class Latency {
     std::printf("\n");
   }
 
+  static const char* verdict(double times) { return times <= kTarget ? "met" : "MISSED"; }
+
   static bool report(const std::vector<Times>& dd, const std::vector<Times>& load) {
     Times all_dd, all_load, dd_over_dd, load_over_dd;
     for (std::size_t zone = 0; zone < dd.size(); ++zone) {
@@ -135,10 +138,11 @@ class Latency {
     row("decision to usable, ms", all_load);
     row("times dd", load_over_dd);
     row("dd itself, times dd", dd_over_dd);
-    const double p50 = at(load_over_dd, 0.5), p99 = at(load_over_dd, 0.99);
-    std::printf("target %.1f at p99: %s; dd itself is %.1f there\n", kTarget,
-                p99 <= kTarget ? "met" : "MISSED", at(dd_over_dd, 0.99));
-    return p50 <= kTarget;
+    const double p99 = at(load_over_dd, 0.99);
+    const double of_p99 = p99 / at(dd_over_dd, 0.99);
+    std::printf("target %.1f at p99: %s with %.2f times dd's p99; %s with %.2f times dd's middle\n",
+                kTarget, verdict(of_p99), of_p99, verdict(p99), p99);
+    return at(load_over_dd, 0.5) <= kTarget;
   }
 
   Catalog catalog_;
