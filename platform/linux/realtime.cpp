@@ -36,11 +36,18 @@ struct Start {
   int error = 0;
 };
 
-// The stack down to its last pages, but for what the C library keeps at its end.
-void populate_stack(std::size_t bytes) noexcept {
-  constexpr std::size_t kKept = 32 * 1024;
-  if (bytes <= kKept) return;
-  populate(static_cast<std::byte*>(__builtin_alloca(bytes - kKept)), bytes - kKept);
+// This thread's stack, from its guard up to here.
+void populate_stack() noexcept {
+  pthread_attr_t attributes;
+  if (pthread_getattr_np(pthread_self(), &attributes) != 0) return;
+  void* lowest = nullptr;
+  std::size_t bytes = 0, guard = 0;
+  pthread_attr_getstack(&attributes, &lowest, &bytes);
+  pthread_attr_getguardsize(&attributes, &guard);
+  pthread_attr_destroy(&attributes);
+  auto* const begin = static_cast<std::byte*>(lowest) + guard;
+  const auto* const here = static_cast<std::byte*>(__builtin_frame_address(0));
+  populate(begin, static_cast<std::size_t>(here - begin));
 }
 
 int set_up(const Start& start, bool& realtime) noexcept {
@@ -59,7 +66,7 @@ int set_up(const Start& start, bool& realtime) noexcept {
     if (error != 0 && !start.allow_ordinary) return error;
     realtime = error == 0;
   }
-  populate_stack(settings.stack_bytes);
+  populate_stack();
   return 0;
 }
 

@@ -40,7 +40,7 @@ TEST(Thread, UsesItsStackWithoutAFault) {
   std::uint64_t faults = 1;
   auto thread = Thread::start({.name = "zp-test"}, false, [&] {
     const ThreadUsage before = thread_usage();
-    volatile char used[160 * 1024];
+    volatile char used[100 * 1024];
     for (std::size_t at = 0; at < sizeof used; at += 4096) used[at] = 1;
     faults = thread_usage().minor_faults - before.minor_faults;
   });
