@@ -10,27 +10,27 @@
 
 #include "platform/base/byte_count.hpp"
 #include "platform/base/result.hpp"
+#include "platform/read_queue.hpp"
 
 namespace zonepack {
 
 // The way of a file's bytes into private memory.
 enum class ReadMode : std::uint8_t {
-  kDirect,    // past the page cache (O_DIRECT); kBuffered where the file system cannot
+  kDirect,    // what read_ahead() asks for past the page cache, by a ReadQueue; else as kBuffered
   kMapped,    // from mapped windows, whose pages are dropped from the cache behind the reader
   kBuffered,  // pread, and dropped from the cache behind the reader
   kCached,    // pread, and left in the cache: tools, which read a file again and again
 };
 
 // The robot's, by measurement: `storage_bench MAP` (tests/bench) loading 22 MB in 24 packs, cold,
-// ext4 on virtio, 2 shared cores, closing the packs included; dd alone reads 1240 MB/s.
-//              MB/s   CPU ms/MB   a zone's time over dd's, p50   page cache at most, left
-//   buffered   920    0.6         1.2                            1.7 MiB, 0
-//   mapped     320    3.0         3.6                            1.7 MiB, 0
-//   direct     410    1.3         2.8                            28 KiB, 0
-//   (cached)   890    0.6         1.2                            all, all
-// The first two read ahead while we decode; mapped ones unmap their windows on every core. Beyond
-// that, a disk faster than the decoder (2.8 GB/s of stored bytes, warm) waits for it.
-inline constexpr ReadMode kDefaultReadMode = ReadMode::kBuffered;
+// ext4 on virtio, 2 shared cores, closing the packs included; dd alone reads 1100 to 1300 MB/s.
+//              MB/s   CPU ms/MB   a zone's time over dd's, p50, p99   page cache at most, left
+//   direct     1800   0.3         0.6   1.1                           24 KiB, 0
+//   buffered    900   0.6         1.3   2 to 3                        1.8 MiB, 0
+//   mapped      330   2.8         3     7                             1.8 MiB, 0
+//   (cached)   1000   0.5         1.2   2                             all, all
+// All read ahead while we decode; mapped ones unmap their windows on every core.
+inline constexpr ReadMode kDefaultReadMode = ReadMode::kDirect;
 
 // A file opened for reading, whose bytes are copied out, never looked at in place: a file that
 // shrinks, changes or fails under us costs an error code and nothing else. Errors: kNotFound, kIo
@@ -40,13 +40,15 @@ inline constexpr ReadMode kDefaultReadMode = ReadMode::kBuffered;
 // time (it counts against the memory cgroup of the process) and next to nothing once the file is
 // closed. Other readers of the same file lose it from the cache, too.
 //
-// Threads: read_at() from any; the window calls from one at a time.
+// Threads: read_at() from any, with kDirect from the one that makes the other calls.
 class StorageFile {
  public:
   static constexpr ByteCount kMostPageCache = 4 * kMiB;
 
-  // Regular files only.
-  static Result<StorageFile> open(const std::string& path, ReadMode mode = ReadMode::kCached);
+  // Regular files only. kDirect is kBuffered without a queue, with one that another file uses, and
+  // where the file system has no direct reads. The queue must outlive the file.
+  static Result<StorageFile> open(const std::string& path, ReadMode mode = ReadMode::kCached,
+                                  ReadQueue* queue = nullptr);
 
   StorageFile(StorageFile&& other) noexcept;
   StorageFile& operator=(StorageFile&& other) noexcept;
@@ -55,43 +57,40 @@ class StorageFile {
   std::uint64_t size() const noexcept { return size_; }  // when it was opened
   ReadMode mode() const noexcept { return mode_; }       // the one in use
 
-  // Fills all of `out` from `offset`, or fails. No allocation. Through mapped windows in kMapped
-  // and kDirect, whose own reads need aligned buffers.
+  // Fills all of `out` from `offset`, or fails. No allocation. Through mapped windows in kMapped.
   Result<void> read_at(std::uint64_t offset, std::span<std::byte> out) const noexcept;
 
-  // The longest window that read_window() brings into this buffer, wherever it starts: the buffer
-  // less what direct reads need to align both ends, 4 KiB when it starts on a page, else up to 8.
-  std::size_t window_room(std::span<const std::byte> buffer) const noexcept;
-
-  // Brings [offset, offset + size) into `buffer`; the bytes stand somewhere in it. No allocation.
+  // Brings [offset, offset + size) into `buffer`, of that size or more, or tells where else the
+  // bytes stand until the next window. No allocation.
   Result<std::span<const std::byte>> read_window(std::uint64_t offset, std::size_t size,
                                                  std::span<std::byte> buffer) noexcept;
 
-  // Whether windows come through the page cache, a little at a time: read_ahead() serves them.
-  bool reads_ahead() const noexcept {
-    return mode_ == ReadMode::kMapped || mode_ == ReadMode::kBuffered;
-  }
+  // Whether read_ahead() serves what is read afterwards.
+  bool reads_ahead() const noexcept { return mode_ != ReadMode::kCached; }
 
-  // Starts to bring these bytes into the page cache, without waiting: for what is soon read by
-  // read_at(), or by windows that reads_ahead() tells of, in rising order. False when kMostRanges
-  // wait to be read. The caller keeps to kMostAhead altogether. Closing waits for what nobody read,
-  // because pages on their way cannot be dropped.
+  // Starts to bring these bytes, without waiting: expect() for what read_at() reads soon,
+  // read_ahead() for windows in rising order. False when there is no room for some of them: ask
+  // again when more was read. The caller keeps to most_ahead() altogether. Closing waits for what
+  // nobody read, because it cannot be called back.
   static constexpr ByteCount kMostAhead = 1 * kMiB;
   static constexpr std::size_t kMostRanges = 16;
+  ByteCount most_ahead() const noexcept {
+    return mode_ == ReadMode::kDirect ? ReadQueue::kBytes - ReadQueue::kPieceBytes : kMostAhead;
+  }
+  bool expect(std::uint64_t offset, std::uint64_t size) noexcept;
   bool read_ahead(std::uint64_t offset, std::uint64_t size) noexcept;
 
  private:
   explicit StorageFile(int fd, ReadMode mode) : fd_(fd), mode_(mode) {}
 
   Result<void> probe(std::uint64_t offset, std::uint64_t size) const noexcept;
-  Result<std::span<const std::byte>> read_direct(std::uint64_t offset, std::size_t size,
-                                                 std::span<std::byte> buffer) noexcept;
   void settle_ahead(std::uint64_t end) noexcept;
   void drop_behind(std::uint64_t end) noexcept;
 
   int fd_;
   ReadMode mode_;
-  std::uint32_t mark_ = 0;  // StorageProbe's
+  ReadQueue* queue_ = nullptr;  // with kDirect
+  std::uint32_t mark_ = 0;      // StorageProbe's
   std::uint64_t size_ = 0;
   std::uint64_t dropped_ = 0;  // the cache holds nothing of ours before this offset
   struct Range {

@@ -12,34 +12,26 @@
 #include <utility>
 
 #include "platform/base/require.hpp"
+#include "platform/descriptor.hpp"
 #include "platform/linux/mapped_copy.hpp"
 #include "platform/storage_probe.hpp"
 
 namespace zonepack {
 namespace {
 
-// Enough for every block device; what asks for more refuses with EINVAL and is read buffered.
-constexpr std::uint64_t kDirectAlignment = 4096;
 constexpr std::uint64_t kSmallestPage = 4096;
 constexpr ByteCount kDropBytes = 1 * kMiB;
 constexpr std::size_t kPieceBytes = 1 * kMiB;
 
 std::atomic<StorageProbe*> probe_in_use = nullptr;
 
-constexpr std::uint64_t align_down(std::uint64_t value) {
-  return value / kDirectAlignment * kDirectAlignment;
-}
-constexpr std::uint64_t align_up(std::uint64_t value) {
-  return align_down(value + kDirectAlignment - 1);
-}
-
-// The part of a buffer between its first and last page boundary.
-template <typename Byte>
-std::span<Byte> aligned_part(std::span<Byte> buffer) {
-  const auto begin = reinterpret_cast<std::uintptr_t>(buffer.data());
-  const std::uint64_t skip = align_up(begin) - begin;
-  if (buffer.size() < skip) return {};
-  return buffer.subspan(skip, align_down(buffer.size() - skip));
+// The same file for reads past the page cache; none where it has no such reads, or is another now.
+Descriptor open_direct(const std::string& path, int flags, const struct stat& same) noexcept {
+  Descriptor direct(::open(path.c_str(), flags | O_DIRECT));
+  struct stat status;
+  if (!direct.is_open() || ::fstat(direct.get(), &status) != 0) return {};
+  if (status.st_dev != same.st_dev || status.st_ino != same.st_ino) return {};
+  return direct;
 }
 
 // Reading at `at` gave nothing: the file ends there or before.
@@ -77,7 +69,7 @@ void wait_for(int fd, std::uint64_t from, std::uint64_t to) noexcept {
 
 void set_storage_probe(StorageProbe* probe) noexcept { probe_in_use = probe; }
 
-Result<StorageFile> StorageFile::open(const std::string& path, ReadMode mode) {
+Result<StorageFile> StorageFile::open(const std::string& path, ReadMode mode, ReadQueue* queue) {
   StorageProbe::FileMark mark = 0;
   if (StorageProbe* const probe = probe_in_use; probe != nullptr) {
     const Result<StorageProbe::FileMark> marked = probe->on_open(path);
@@ -85,12 +77,7 @@ Result<StorageFile> StorageFile::open(const std::string& path, ReadMode mode) {
     mark = *marked;
   }
   constexpr int kFlags = O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK;
-  int fd = -1;
-  if (mode == ReadMode::kDirect) {
-    fd = ::open(path.c_str(), kFlags | O_DIRECT);
-    if (fd < 0 && errno == EINVAL) mode = ReadMode::kBuffered;
-  }
-  if (fd < 0) fd = ::open(path.c_str(), kFlags);
+  const int fd = ::open(path.c_str(), kFlags);
   if (fd < 0) return {errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kIo, errno};
   StorageFile file(fd, mode);
   file.mark_ = mark;
@@ -100,6 +87,16 @@ Result<StorageFile> StorageFile::open(const std::string& path, ReadMode mode) {
     return {ErrorCode::kIo, S_ISDIR(status.st_mode) ? EISDIR : EINVAL};
   }
   file.size_ = static_cast<std::uint64_t>(status.st_size);
+  if (mode == ReadMode::kDirect) {
+    file.mode_ = ReadMode::kBuffered;
+    Descriptor direct;
+    if (queue != nullptr && !queue->busy()) direct = open_direct(path, kFlags, status);
+    if (direct.is_open()) {
+      queue->begin(std::move(direct));
+      file.queue_ = queue;
+      file.mode_ = ReadMode::kDirect;
+    }
+  }
   // No reading ahead beyond what read_ahead() asks for: on some machines it is 8 MiB.
   if (mode != ReadMode::kCached) ::posix_fadvise(fd, 0, 0, POSIX_FADV_RANDOM);
   return file;
@@ -112,6 +109,7 @@ StorageFile::StorageFile(StorageFile&& other) noexcept : StorageFile(-1, ReadMod
 StorageFile& StorageFile::operator=(StorageFile&& other) noexcept {
   std::swap(fd_, other.fd_);
   std::swap(mode_, other.mode_);
+  std::swap(queue_, other.queue_);
   std::swap(mark_, other.mark_);
   std::swap(size_, other.size_);
   std::swap(dropped_, other.dropped_);
@@ -122,8 +120,8 @@ StorageFile& StorageFile::operator=(StorageFile&& other) noexcept {
 
 StorageFile::~StorageFile() {
   if (fd_ < 0) return;
+  if (queue_ != nullptr) queue_->end();
   if (mode_ != ReadMode::kCached) {
-    if (mode_ == ReadMode::kDirect) ::fcntl(fd_, F_SETFL, 0);  // to wait for the cache's pages
     for (std::size_t i = 0; i < ahead_count_; ++i) wait_for(fd_, ahead_[i].from, ahead_[i].to);
     ::posix_fadvise(fd_, 0, 0, POSIX_FADV_DONTNEED);
   }
@@ -137,21 +135,23 @@ Result<void> StorageFile::probe(std::uint64_t offset, std::uint64_t size) const 
 
 Result<void> StorageFile::read_at(std::uint64_t offset, std::span<std::byte> out) const noexcept {
   if (const Result<void> allowed = probe(offset, out.size()); !allowed) return allowed;
-  const bool mapped = mode_ == ReadMode::kDirect || mode_ == ReadMode::kMapped;
-  return mapped ? copy_mapped(fd_, offset, out) : read_all(fd_, offset, out);
-}
-
-std::size_t StorageFile::window_room(std::span<const std::byte> buffer) const noexcept {
-  if (mode_ != ReadMode::kDirect) return buffer.size();
-  const std::size_t aligned = aligned_part(buffer).size();
-  return aligned < kDirectAlignment ? 0 : aligned - (kDirectAlignment - 1);
+  if (queue_ != nullptr) {
+    if (const auto there = queue_->find(offset, out.size(), out)) {
+      if (there->data() != out.data()) std::ranges::copy(*there, out.begin());
+      return {};
+    }
+  }
+  return mode_ == ReadMode::kMapped ? copy_mapped(fd_, offset, out) : read_all(fd_, offset, out);
 }
 
 Result<std::span<const std::byte>> StorageFile::read_window(std::uint64_t offset, std::size_t size,
                                                             std::span<std::byte> buffer) noexcept {
-  ZP_REQUIRE(size <= window_room(buffer));
+  ZP_REQUIRE(size <= buffer.size());
   if (const Result<void> allowed = probe(offset, size); !allowed) return allowed.error();
-  if (mode_ == ReadMode::kDirect) return read_direct(offset, size, buffer);
+  if (queue_ != nullptr) {
+    queue_->pass(offset);
+    if (const auto there = queue_->find(offset, size, buffer)) return *there;
+  }
   const std::span<std::byte> out = buffer.first(size);
   const Result<void> read =
       mode_ == ReadMode::kMapped ? copy_mapped(fd_, offset, out) : read_all(fd_, offset, out);
@@ -161,34 +161,11 @@ Result<std::span<const std::byte>> StorageFile::read_window(std::uint64_t offset
   return std::span<const std::byte>(out);
 }
 
-Result<std::span<const std::byte>> StorageFile::read_direct(std::uint64_t offset, std::size_t size,
-                                                            std::span<std::byte> buffer) noexcept {
-  const std::span<std::byte> room = aligned_part(buffer);
-  const std::uint64_t from = align_down(offset);
-  const std::uint64_t to = align_up(offset + size);  // may lie beyond the end of the file
-  std::uint64_t at = from;
-  while (at < offset + size) {
-    const ssize_t got = ::pread(fd_, room.data() + (at - from), to - at, static_cast<off_t>(at));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0 && errno == EINVAL) {  // allowed at open, refused now
-      if (::fcntl(fd_, F_SETFL, O_NONBLOCK) != 0) return {ErrorCode::kIo, errno};
-      mode_ = ReadMode::kBuffered;
-      const std::span<std::byte> out = buffer.first(size);
-      if (const auto read = read_all(fd_, offset, out); !read) return read.error();
-      return std::span<const std::byte>(out);
-    }
-    if (got < 0) return {ErrorCode::kIo, errno};
-    at += static_cast<std::uint64_t>(got);
-    // Only the end of a file gives a part of a block.
-    if (got == 0 || at % kDirectAlignment != 0) break;
-  }
-  if (at < offset + size) return truncated(fd_, at);
-  settle_ahead(offset + size);
-  drop_behind(offset + size);  // some file systems serve direct reads from the cache
-  return std::span<const std::byte>(room.subspan(offset - from, size));
+bool StorageFile::read_ahead(std::uint64_t offset, std::uint64_t size) noexcept {
+  return queue_ != nullptr ? queue_->ask(offset, size) : expect(offset, size);
 }
 
-bool StorageFile::read_ahead(std::uint64_t offset, std::uint64_t size) noexcept {
+bool StorageFile::expect(std::uint64_t offset, std::uint64_t size) noexcept {
   if (ahead_count_ == ahead_.size()) return false;
   ::posix_fadvise(fd_, static_cast<off_t>(offset), static_cast<off_t>(size), POSIX_FADV_WILLNEED);
   ahead_[ahead_count_++] = {offset, offset + size};
@@ -213,7 +190,6 @@ void StorageFile::drop_behind(std::uint64_t end) noexcept {
 
 Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t limit,
                                          ReadMode mode) {
-  if (mode == ReadMode::kDirect) mode = ReadMode::kBuffered;  // into place, wherever that is
   Result<StorageFile> file = StorageFile::open(path, mode);
   if (!file) return file.error();
   limit = std::min<std::uint64_t>(limit, PTRDIFF_MAX);

@@ -75,6 +75,7 @@ LiveLoader::LiveLoader(const Catalog& catalog, SharedMap& map, const ReadingChoi
       inbox_(map.slot_count() + 4),
       outbox_(4),
       read_buffer_(kReadBufferBytes),
+      queue_(reading.mode == ReadMode::kDirect ? ReadQueue::make() : nullptr),
       mode_(reading.mode),
       rate_(reading.rate_limit) {
   slots_.reserve(map.slot_count());
@@ -163,7 +164,8 @@ Error LiveLoader::read_zone(const Message& message, const SlotChain& slots) {
     places_.push_back(map_.slot(slot).data());
   }
   if (cancelled(request)) return {ErrorCode::kCancelled};
-  auto begun = ZoneLoad::begin(*message.catalog, request.zone, places_, read_buffer_, mode_);
+  auto begun =
+      ZoneLoad::begin(*message.catalog, request.zone, places_, read_buffer_, {mode_, queue_.get()});
   if (!begun) return begun.error();
   load_.emplace(std::move(begun).value());
   Host host(*this, request);

@@ -33,7 +33,7 @@ struct ReadingChoice {
 
 class LiveLoader final : public ZoneLoader {
  public:
-  // `catalog` and `map` must outlive this object.
+  // `catalog` and `map` must outlive this object. Direct reads take ReadQueue::kBytes beside.
   LiveLoader(const Catalog& catalog, SharedMap& map, const ReadingChoice& reading = {});
   ~LiveLoader() override;
 
@@ -88,6 +88,7 @@ class LiveLoader final : public ZoneLoader {
   std::vector<SlotIndex> slots_;
   std::vector<std::byte*> places_;
   std::vector<std::byte> read_buffer_;
+  std::unique_ptr<ReadQueue> queue_;  // for direct reads, where there are any
   ReadMode mode_;
   RateLimit rate_;
   std::optional<ZoneLoad> load_;  // closed after its result is told: pages are dropped then

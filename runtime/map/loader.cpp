@@ -5,11 +5,11 @@
 
 namespace zonepack {
 
-Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, ReadMode mode,
+Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, const PackReading& reading,
                              std::uint64_t soon) {
   const CatalogZone& wanted = catalog.zones[zone];
   Result<PackReader> pack =
-      PackReader::open(catalog.folder + "/" + wanted.pack, &wanted.pack_digest, mode, soon);
+      PackReader::open(catalog.folder + "/" + wanted.pack, &wanted.pack_digest, reading, soon);
   if (!pack) return pack.error();
   const fb::PackIndex& index = pack->index();
   if (index.zone()->str() != wanted.name || index.signatures() != wanted.signatures ||
@@ -21,11 +21,11 @@ Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, ReadMode mode,
 
 Result<ZoneLoad> ZoneLoad::begin(const Catalog& catalog, ZoneId zone,
                                  std::span<std::byte* const> slots,
-                                 std::span<std::byte> read_buffer, ReadMode mode) {
+                                 std::span<std::byte> read_buffer, const PackReading& reading) {
   // The chunks of the usual payload come first in a pack, and are stored no longer than they
   // decode.
   const std::uint64_t soon = std::uint64_t{catalog.zones[zone].slots} * kSlotBytes;
-  Result<PackReader> pack = open_pack(catalog, zone, mode, soon);
+  Result<PackReader> pack = open_pack(catalog, zone, reading, soon);
   if (!pack) return pack.error();
   if (slots.size() < catalog.zones[zone].slots) {
     return {ErrorCode::kNoRoom, catalog.zones[zone].slots};
@@ -54,14 +54,14 @@ ZoneLoad::ZoneLoad(PackReader pack, PayloadMask mask, std::span<std::byte* const
 void ZoneLoad::ask_ahead() {
   StorageFile& file = pack_.file();
   if (!file.reads_ahead()) return;
-  constexpr ByteCount kMost = StorageFile::kMostAhead;
+  const ByteCount most = file.most_ahead();
   if (ahead_ < next_) ahead_ = next_;
-  if (ahead_bytes_ >= kMost / 2) return;
+  if (ahead_bytes_ >= most / 4 * 3) return;
   const auto& all = *pack_.index().chunks();
-  while (ahead_ < all.size() && ahead_bytes_ < kMost) {
+  while (ahead_ < all.size() && ahead_bytes_ < most) {
     std::uint32_t end = ahead_;
     ByteCount run = 0;
-    for (; end < all.size() && wanted(*all.Get(end)) && ahead_bytes_ + run < kMost; ++end) {
+    for (; end < all.size() && wanted(*all.Get(end)) && ahead_bytes_ + run < most; ++end) {
       run += all.Get(end)->stored_size();
     }
     if (run > 0 && !file.read_ahead(all.Get(ahead_)->offset(), run)) return;
@@ -89,17 +89,15 @@ Result<ByteSpan> ZoneLoad::stored(const fb::ChunkEntry& entry, std::byte* place)
   if (window_from_ <= from && end <= window_from_ + window_.size()) {
     return window_.subspan(from - window_from_, entry.stored_size());
   }
-  const bool anywhere = pack_.file().mode() != ReadMode::kDirect;
-  const auto in_place = [&](const fb::ChunkEntry& chunk) {
-    return anywhere && chunk.codec() == fb::ChunkCodec::Raw;
+  const auto in_place = [](const fb::ChunkEntry& chunk) {
+    return chunk.codec() == fb::ChunkCodec::Raw;
   };
   if (in_place(entry)) return fetch(from, entry.stored_size(), {place, entry.stored_size()});
-  const std::size_t room = pack_.file().window_room(buffer_);
   const auto& all = *pack_.index().chunks();
   std::uint64_t to = end;
   for (std::uint32_t i = next_ + 1; i < all.size(); ++i) {
     const fb::ChunkEntry& more = *all.Get(i);
-    if (!wanted(more) || in_place(more) || to + more.stored_size() - from > room) break;
+    if (!wanted(more) || in_place(more) || to + more.stored_size() - from > buffer_.size()) break;
     to += more.stored_size();
   }
   const Result<ByteSpan> window = fetch(from, to - from, buffer_);

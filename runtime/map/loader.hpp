@@ -14,7 +14,7 @@ namespace zonepack {
 
 // Opens the pack of a zone. kMismatch when it is a whole pack, but not the one that the manifest
 // names, or holds another zone or number of signatures or slots. `soon`: see PackReader::open().
-Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, ReadMode mode = ReadMode::kCached,
+Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, const PackReading& reading = {},
                              std::uint64_t soon = 0);
 
 // Loads one zone, chunk by chunk, from its pack into slots: read into a private buffer, check,
@@ -26,10 +26,10 @@ Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, ReadMode mode 
 class ZoneLoad {
  public:
   // `slots` are the zone's, in placement order, kSlotBytes each; catalog.zones[zone].slots of them.
-  // `read_buffer` has kReadBufferBytes; starting on a page it serves direct reads best.
+  // `read_buffer` has kReadBufferBytes.
   static Result<ZoneLoad> begin(const Catalog& catalog, ZoneId zone,
                                 std::span<std::byte* const> slots, std::span<std::byte> read_buffer,
-                                ReadMode mode = kDefaultReadMode);
+                                const PackReading& reading = kDefaultReadMode);
 
   // Loads the next chunk; false when there was none left. After an error the load is over.
   Result<bool> step();

@@ -13,8 +13,8 @@ constexpr std::uint64_t kFirstBytes = 256 * kKiB;
 }  // namespace
 
 Result<PackReader> PackReader::open(const std::string& path, const Digest32* expected,
-                                    ReadMode mode, std::uint64_t soon) {
-  Result<StorageFile> file = StorageFile::open(path, mode);
+                                    const PackReading& reading, std::uint64_t soon) {
+  Result<StorageFile> file = StorageFile::open(path, reading.mode, reading.queue);
   if (!file) return file.error();
   if (file->size() < sizeof(PackHeader) + sizeof(PackTail)) {
     return {ErrorCode::kTruncated, static_cast<std::int64_t>(file->size())};
@@ -22,10 +22,12 @@ Result<PackReader> PackReader::open(const std::string& path, const Digest32* exp
   // The end first, which is looked at first; a short file in one request.
   const std::uint64_t end_bytes = std::min<std::uint64_t>(file->size(), kUsualIndexBytes);
   if (!file->reads_ahead()) soon = 0;
+  const bool direct = file->mode() == ReadMode::kDirect;
+  const std::uint64_t most = direct ? file->most_ahead() : kFirstBytes;
   std::uint64_t front = file->size();
-  if (soon == 0 || file->size() > kFirstBytes) {
-    front = std::clamp<std::uint64_t>(soon, sizeof(PackHeader), std::min(front, kFirstBytes));
-    file->read_ahead(file->size() - end_bytes, end_bytes);
+  if (soon == 0 || direct || file->size() > most) {
+    front = std::clamp<std::uint64_t>(soon, sizeof(PackHeader), std::min(front, most));
+    file->expect(file->size() - end_bytes, end_bytes);
   }
   file->read_ahead(0, front);
   alignas(8) std::array<std::byte, kUsualIndexBytes> end;

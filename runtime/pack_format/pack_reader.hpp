@@ -13,6 +13,15 @@
 
 namespace zonepack {
 
+// How a pack is read: see StorageFile::open(), which says what becomes of kDirect without a queue.
+struct PackReading {
+  // NOLINTNEXTLINE(google-explicit-constructor): a mode is a way of reading
+  PackReading(ReadMode how = ReadMode::kCached, ReadQueue* by = nullptr) : mode(how), queue(by) {}
+
+  ReadMode mode;
+  ReadQueue* queue;
+};
+
 // An open pack with its index read and checked.
 //
 // Header, index and tail are copied out as the mode says: mapped or, by default, by pread, which is
@@ -21,10 +30,10 @@ namespace zonepack {
 class PackReader {
  public:
   // With `expected`, kMismatch for a whole pack that is another than the one asked for. `soon`:
-  // bytes from the front that the caller reads next by windows of kMapped or kBuffered; they begin
-  // to come together with the index (StorageFile::read_ahead), as many as front_asked() tells.
+  // bytes from the front that the caller reads next by windows; where the mode reads ahead they
+  // begin to come together with the index, as many as front_asked() tells.
   static Result<PackReader> open(const std::string& path, const Digest32* expected = nullptr,
-                                 ReadMode mode = ReadMode::kCached, std::uint64_t soon = 0);
+                                 const PackReading& reading = {}, std::uint64_t soon = 0);
 
   const fb::PackIndex& index() const noexcept { return *index_; }
   const PackTail& tail() const noexcept { return tail_; }

@@ -18,6 +18,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -148,7 +149,7 @@ class Bench {
     if (way.plain) return plain(zone, after_step);
     if (!load) return windows(way, zone, after_step);
     Result<ZoneLoad> under_way =
-        ZoneLoad::begin(map_.catalog, zone, map_.slots, buffer(), way.mode);
+        ZoneLoad::begin(map_.catalog, zone, map_.slots, buffer(), {way.mode, queue_.get()});
     if (!under_way) fail(paths_[zone] + ": " + to_string(under_way.error().code));
     for (;;) {
       const Result<bool> more = under_way->step();
@@ -167,16 +168,16 @@ class Bench {
 
   template <typename AfterStep>
   void windows(const Way& way, ZoneId zone, AfterStep&& after_step) {
-    Result<StorageFile> file = StorageFile::open(paths_[zone], way.mode);
+    Result<StorageFile> file = StorageFile::open(paths_[zone], way.mode, queue_.get());
     if (!file) fail(paths_[zone] + ": " + to_string(file.error().code));
-    const std::uint64_t room = file->window_room(buffer());
+    constexpr std::uint64_t kRoom = kReadBufferBytes;
     std::uint64_t asked = 0;
-    for (std::uint64_t at = 0; at < file->size(); at += room) {
-      const std::uint64_t size = std::min(room, file->size() - at);
-      const bool ahead = way.mode == ReadMode::kMapped || way.mode == ReadMode::kBuffered;
-      if (ahead && asked < file->size() && asked < at + size + StorageFile::kMostAhead / 2) {
+    for (std::uint64_t at = 0; at < file->size(); at += kRoom) {
+      const std::uint64_t size = std::min(kRoom, file->size() - at);
+      const ByteCount most = file->most_ahead();
+      if (file->reads_ahead() && asked < file->size() && asked < at + size + most / 2) {
         const std::uint64_t start = std::max(at, asked);
-        asked = std::min(file->size(), at + StorageFile::kMostAhead);
+        asked = std::min(file->size(), at + most);
         file->read_ahead(start, asked - start);
       }
       if (!file->read_window(at, size, buffer())) fail(paths_[zone] + " cannot be read");
@@ -234,6 +235,7 @@ class Bench {
 
   BenchMap map_;
   std::vector<std::byte> memory_ = std::vector<std::byte>(kReadBufferBytes + 4096);
+  std::unique_ptr<ReadQueue> queue_ = ReadQueue::make();
   std::vector<std::string> paths_;
   std::uint64_t stored_ = 0;
   bool grouped_ = false;

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <thread>
 
 #include "tests/support/numbered_file.hpp"
@@ -25,33 +26,47 @@ constexpr std::size_t kBufferBytes = 64 * 1024;
 
 class Storage : public testing::TestWithParam<ReadMode> {
  protected:
-  static StorageFile open(const NumberedFile& file) {
-    return StorageFile::open(file.path().string(), GetParam()).value();
+  StorageFile open(const NumberedFile& file) {
+    return StorageFile::open(file.path().string(), GetParam(), queue_.get()).value();
   }
 
-  alignas(4096) std::byte buffer_[kBufferBytes + 4096];
-  std::span<std::byte> aligned_{buffer_, kBufferBytes};
+  std::unique_ptr<ReadQueue> queue_ = ReadQueue::make();
+  std::byte buffer_[kBufferBytes];
 };
 
-TEST_P(Storage, BringsTheSameBytesWhereverAWindowStartsAndTheBufferStands) {
+TEST_P(Storage, BringsTheSameBytesWhereverAWindowStarts) {
   const NumberedFile file(300'001);
-  StorageFile opened = open(file);
-  EXPECT_EQ(opened.size(), 300'001u);
-  for (const std::size_t shift : {0u, 1u, 16u, 4095u}) {
-    const std::span<std::byte> buffer = std::span(buffer_).subspan(shift, kBufferBytes);
-    const std::size_t room = opened.window_room(buffer);
-    // 16 pages; less at most a page because of where the buffer stands, and one because of where
-    // the window does.
-    ASSERT_GE(room, kBufferBytes - 8192);
+  for (const bool ahead : {false, true}) {
     for (const std::uint64_t offset : {0ul, 1ul, 511ul, 512ul, 4095ul, 4096ul, 200'000ul}) {
-      const auto window = opened.read_window(offset, room, buffer);
+      StorageFile opened = open(file);
+      EXPECT_EQ(opened.size(), 300'001u);
+      if (ahead) opened.read_ahead(offset, 300'001 - offset);
+      const auto window = opened.read_window(offset, kBufferBytes, buffer_);
       ASSERT_TRUE(window) << offset;
-      EXPECT_EQ(window->size(), room);
+      EXPECT_EQ(window->size(), kBufferBytes);
       EXPECT_TRUE(are_numbers(*window, offset)) << offset;
+      const auto last = opened.read_window(300'000, 1, buffer_);
+      ASSERT_TRUE(last);
+      EXPECT_TRUE(are_numbers(*last, 300'000));
     }
-    const auto last = opened.read_window(300'000, 1, buffer);
-    ASSERT_TRUE(last);
-    EXPECT_TRUE(are_numbers(*last, 300'000));
+  }
+}
+
+TEST_P(Storage, BringsAFileLargerThanTheQueueWhileItReadsAhead) {
+  constexpr std::uint64_t kBytes = 3 * ReadQueue::kBytes + 12'345;
+  const NumberedFile file(kBytes);
+  for (const std::size_t size :
+       {kBufferBytes, std::size_t{50'000}}) {  // wraps within a window, too
+    StorageFile opened = open(file);
+    std::uint64_t asked = 0;
+    for (std::uint64_t at = 0; at < kBytes; at += size) {
+      const std::uint64_t to = std::min<std::uint64_t>(kBytes, at + opened.most_ahead());
+      if (opened.reads_ahead() && to > asked && opened.read_ahead(asked, to - asked)) asked = to;
+      const auto window =
+          opened.read_window(at, std::min<std::uint64_t>(size, kBytes - at), buffer_);
+      ASSERT_TRUE(window);
+      ASSERT_TRUE(are_numbers(*window, at)) << at;
+    }
   }
 }
 
@@ -77,7 +92,7 @@ TEST_P(Storage, AFileCutShortAfterItWasOpenedEndsWhereItEndsNow) {
   for (const std::uint64_t size : {70'000ul, 65'536ul, 4096ul, 100ul, 0ul}) {
     file.cut_to(size);
     const Error cut{ErrorCode::kTruncated, static_cast<std::int64_t>(size)};
-    const auto window = opened.read_window(0, 50'000, aligned_);
+    const auto window = opened.read_window(0, 50'000, buffer_);
     if (size < 50'000) {
       EXPECT_EQ(window.error(), cut);
     } else {
@@ -96,11 +111,9 @@ TEST_P(Storage, LeavesLittleInThePageCacheAtAnyTime) {
   std::uint64_t most = 0;
   for (const bool ahead : {true, false}) {
     StorageFile opened = open(file);
-    const std::size_t room = opened.window_room(aligned_);
-    for (std::uint64_t at = 0; at < kBytes; at += room) {
+    for (std::uint64_t at = 0; at < kBytes; at += kBufferBytes) {
       if (ahead) opened.read_ahead(at, StorageFile::kMostAhead);
-      const std::size_t size = std::min<std::uint64_t>(room, kBytes - at);
-      ASSERT_TRUE(opened.read_window(at, size, aligned_));
+      ASSERT_TRUE(opened.read_window(at, kBufferBytes, buffer_));
       most = std::max(most, cached_bytes(file.path()));
     }
   }
@@ -144,11 +157,36 @@ INSTANTIATE_TEST_SUITE_P(Modes, Storage,
                          testing::Values(ReadMode::kDirect, ReadMode::kMapped, ReadMode::kBuffered,
                                          ReadMode::kCached));
 
+TEST(StorageFile, ReadsPastTheCacheByAQueueOneFileAtATime) {
+  const auto queue = ReadQueue::make();
+  if (!queue) GTEST_SKIP() << "this kernel has no asynchronous reads";
+  const NumberedFile file(1'000'000);
+  if (!make_cold(file.path())) GTEST_SKIP() << "a file system in memory: the cache is all it has";
+  const auto open = [&](ReadQueue* by) {
+    return StorageFile::open(file.path().string(), ReadMode::kDirect, by).value();
+  };
+  EXPECT_EQ(open(nullptr).mode(), ReadMode::kBuffered);
+  std::byte buffer[1000];
+  {
+    StorageFile first = open(queue.get());
+    EXPECT_EQ(first.mode(), ReadMode::kDirect);
+    EXPECT_EQ(open(queue.get()).mode(), ReadMode::kBuffered);
+    first.read_ahead(0, 1'000'000);
+    const auto window = first.read_window(999'000, 1000, buffer);
+    ASSERT_TRUE(window);
+    EXPECT_TRUE(are_numbers(*window, 999'000));
+    EXPECT_NE(window->data(), buffer) << "in the queue's own memory";
+    EXPECT_EQ(cached_bytes(file.path()), 0u);
+  }
+  EXPECT_EQ(open(queue.get()).mode(), ReadMode::kDirect) << "and again when the first is closed";
+}
+
 TEST(StorageFile, ReadsThroughTheCacheWhereDirectReadsAreRefused) {
   // The kernel's own files know no direct reads.
   const std::string path = "/sys/kernel/notes";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
-  auto opened = StorageFile::open(path, ReadMode::kDirect);
+  const auto queue = ReadQueue::make();
+  auto opened = StorageFile::open(path, ReadMode::kDirect, queue.get());
   ASSERT_TRUE(opened);
   EXPECT_EQ(opened->mode(), ReadMode::kBuffered);
   std::byte buffer[64];

@@ -38,6 +38,11 @@ class LoadFaults : public testing::TestWithParam<ReadMode> {
     return std::move(*load);
   }
 
+  // What was read ahead, past the cache, is not touched by what happens to the file later.
+  bool had_it_all(const Result<packer::Bytes>& rest) const {
+    return GetParam() == ReadMode::kDirect && rest && *rest == a_;
+  }
+
   test_support::TwoZones map_;
   packer::Bytes a_, b_;
 };
@@ -47,17 +52,34 @@ TEST_P(LoadFaults, CutShortWhileItIsLoaded) {
   ZoneLoad load = begun();
   std::filesystem::resize_file(map_.pack(0), kReadBufferBytes + 100);
   const auto rest = test_support::TwoZones::finish(load);
-  EXPECT_EQ(rest.error(), (Error{ErrorCode::kTruncated, kReadBufferBytes + 100}));
-  EXPECT_THAT(load_fault(map_.catalog(), 0, rest.error()),
-              AllOf(HasSubstr("zone a "), HasSubstr(map_.pack(0).string()),
-                    HasSubstr("ends at byte 65636"), HasSubstr("copy the pack again")));
+  if (!had_it_all(rest)) {
+    EXPECT_EQ(rest.error(), (Error{ErrorCode::kTruncated, kReadBufferBytes + 100}));
+    EXPECT_THAT(load_fault(map_.catalog(), 0, rest.error()),
+                AllOf(HasSubstr("zone a "), HasSubstr(map_.pack(0).string()),
+                      HasSubstr("ends at byte 65636"), HasSubstr("copy the pack again")));
+  }
   EXPECT_FALSE(map_.load(0, GetParam())) << "and from then on";
+}
+
+TEST_P(LoadFaults, CutShortWhereNothingWasReadAheadYet) {
+  test_support::TwoZones large(160);
+  const std::uint64_t size = std::filesystem::file_size(large.pack(0));
+  ASSERT_GT(size, ReadQueue::kBytes + 100'000);
+  Result<ZoneLoad> load = large.begin(0, GetParam());
+  ASSERT_TRUE(*load->step());
+  const std::uint64_t left = ReadQueue::kBytes + 1000;
+  std::filesystem::resize_file(large.pack(0), left);
+  EXPECT_EQ(test_support::TwoZones::finish(*load).error(),
+            (Error{ErrorCode::kTruncated, static_cast<std::int64_t>(left)}));
 }
 
 TEST_P(LoadFaults, CutToNothingWhileItIsLoaded) {
   ZoneLoad load = begun();
   std::filesystem::resize_file(map_.pack(0), 0);
-  EXPECT_EQ(test_support::TwoZones::finish(load).error(), (Error{ErrorCode::kTruncated, 0}));
+  const auto rest = test_support::TwoZones::finish(load);
+  if (!had_it_all(rest)) {
+    EXPECT_EQ(rest.error(), (Error{ErrorCode::kTruncated, 0}));
+  }
   EXPECT_EQ(why(), (Error{ErrorCode::kTruncated, 0}));
 }
 
@@ -91,7 +113,10 @@ TEST_P(LoadFaults, OverwrittenInPlaceWhileItIsLoaded) {
     ASSERT_EQ(::pwrite(fd, other.data(), other.size(), 0), static_cast<ssize_t>(other.size()));
     ::close(fd);
   }
-  EXPECT_EQ(test_support::TwoZones::finish(load).error().code, ErrorCode::kBadChecksum);
+  const auto rest = test_support::TwoZones::finish(load);
+  if (!had_it_all(rest)) {
+    EXPECT_EQ(rest.error().code, ErrorCode::kBadChecksum);
+  }
   EXPECT_EQ(why().code, ErrorCode::kBadMagic);
 }
 

@@ -34,7 +34,7 @@ class TwoZones {
   std::filesystem::path pack(ZoneId zone) const { return disk_ / catalog_.zones[zone].pack; }
 
   Result<ZoneLoad> begin(ZoneId zone, ReadMode mode) {
-    return ZoneLoad::begin(catalog_, zone, slots_, buffer_, mode);
+    return ZoneLoad::begin(catalog_, zone, slots_, buffer_, {mode, queue_.get()});
   }
 
   // The decoded chunks of a zone, or why there are none.
@@ -79,6 +79,7 @@ class TwoZones {
   std::vector<std::unique_ptr<Slot>> memory_;
   std::vector<std::byte*> slots_;
   std::vector<std::byte> buffer_;
+  std::unique_ptr<ReadQueue> queue_ = ReadQueue::make();
 };
 
 }  // namespace zonepack::test_support
