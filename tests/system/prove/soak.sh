@@ -103,7 +103,7 @@ head -n -2 "$work/looks.txt" | awk '
       }
       # Buffers of the threads that write and serve come with their first use.
       slack = i == 1 ? 512 : 0
-      # The recorder's segments: a ring of 8 and the one that replaces the oldest.
+      # Segments of the recorder: a ring of 8 and the one that replaces the oldest.
       grows = i == 6 ? told[3] > 9 : told[3] > told[1] + slack
       bad += grows
       printf "%-18s %12d %12d %12d%s\n", name[i], told[1], told[2], told[3], grows ? "  GROWS" : ""
