@@ -3,8 +3,8 @@
 # usage: timing.sh BIN SOURCE PAIRS SECONDS CYCLES: the control thread at 1 kHz, PAIRS times SECONDS, in turns with
 # cyclictest at the same priority and period, while stress-ng keeps processors, memory, disk and page cache busy; then
 # CYCLES cycles as fast as they go. Judged, in the middle of all pairs: wake-up p50 and p99 within 1.2 times
-# cyclictest's (the mean of the one before and the one after) plus 20 us; the cycle's own work within 50 us at p99.99,
-# or, where this machine stalls any program longer, within 1.5 times what a fixed piece of work of the same length took.
+# cyclictest's (the mean of the one before and the one after) plus 20 us; the cycle's own work within 50 us at p99.99
+# (at p99 in runs under 30 s), or, where this machine stalls any program longer, within 1.5 times what a fixed piece of work of the same length took.
 # And in every run: no page fault, no allocation. Rarer stalls are printed beside cyclictest's. Exit code 77 without
 # the privilege for real time.
 set -euo pipefail
@@ -125,6 +125,8 @@ middle() {  # KIND PATH
   for ((pair = 1; pair <= pairs; ++pair)); do jq "$2" "$work/$1-$pair.json"; done | sort -g |
     awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'
 }
-own=$(middle zoned .cycle_us.p9999) fixed=$(middle fixed .p9999)
-echo "own work p99.99, middle of $pairs pairs: $own us; fixed work of the same length: $fixed us"
-awk "BEGIN { exit !($own <= 50 || $own <= 1.5 * $fixed) }" || fail "a cycle's own work is over 50 us at p99.99"
+tail=p9999
+((seconds >= 30)) || tail=p99  # of fewer cycles, p99.99 is the worst one
+own=$(middle zoned .cycle_us.$tail) fixed=$(middle fixed .$tail)
+echo "own work $tail, middle of $pairs pairs: $own us; fixed work of the same length: $fixed us"
+awk "BEGIN { exit !($own <= 50 || $own <= 1.5 * $fixed) }" || fail "a cycle's own work is over 50 us at $tail"
