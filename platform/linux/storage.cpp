@@ -31,6 +31,7 @@ Descriptor open_direct(const std::string& path, int flags, const struct stat& sa
   struct stat status;
   if (!direct.is_open() || ::fstat(direct.get(), &status) != 0) return {};
   if (status.st_dev != same.st_dev || status.st_ino != same.st_ino) return {};
+  ::posix_fadvise(direct.get(), 0, 0, POSIX_FADV_RANDOM);
   return direct;
 }
 
@@ -150,7 +151,10 @@ Result<std::span<const std::byte>> StorageFile::read_window(std::uint64_t offset
   if (const Result<void> allowed = probe(offset, size); !allowed) return allowed.error();
   if (queue_ != nullptr) {
     queue_->pass(offset);
-    if (const auto there = queue_->find(offset, size, buffer)) return *there;
+    if (const auto there = queue_->find(offset, size, buffer)) {
+      drop_behind(offset + size);  // some file systems serve such reads from the cache
+      return *there;
+    }
   }
   const std::span<std::byte> out = buffer.first(size);
   const Result<void> read =

@@ -3,10 +3,10 @@
 # usage: timing.sh BIN SOURCE PAIRS SECONDS CYCLES: the control thread at 1 kHz, PAIRS times SECONDS, in turns with
 # cyclictest at the same priority and period, while stress-ng keeps processors, memory, disk and page cache busy; then
 # CYCLES cycles as fast as they go. Judged, in the middle of all pairs: wake-up p50 and p99 within 1.2 times
-# cyclictest's (the mean of the one before and the one after) plus 20 us; the cycle's own work within 50 us at p99.99
-# (at p99 in runs under 30 s), or, where this machine stalls any program longer, within 1.5 times what a fixed piece of work of the same length took.
-# And in every run: no page fault, no allocation. Rarer stalls are printed beside cyclictest's. Exit code 77 without
-# the privilege for real time.
+# cyclictest's (the mean of the one before and the one after) plus 20 us; the cycle's own work within 50 us at p99.99,
+# in runs under 30 s at p99, or, where this machine stalls any program longer, within 1.5 times what a fixed piece of
+# work of the same length took. And in every run: no page fault, no allocation. Rarer stalls are printed beside
+# cyclictest's. Exit code 77 without the privilege for real time.
 set -euo pipefail
 bin=$1 source=$2 pairs=$3 seconds=$4 cycles=$5
 . "$(dirname "$0")/lib.sh"
