@@ -93,8 +93,8 @@ bool ReadQueue::ask(std::uint64_t offset, std::uint64_t size) noexcept {
   long begun = count == 0 ? 0 : ::syscall(SYS_io_submit, context_, count, wanted.data());
   // What the kernel does not take now is there as a failure.
   for (auto i = static_cast<std::size_t>(std::max(begun, 0L)); i < count; ++i) {
-    pieces_[requests[i].aio_data].state = Piece::State::kThere;
-    pieces_[requests[i].aio_data].bytes = -EAGAIN;
+    place_of(requests[i].aio_data).state = Piece::State::kThere;
+    place_of(requests[i].aio_data).bytes = -EAGAIN;
   }
   return room;
 }
@@ -107,7 +107,7 @@ void ReadQueue::wait() noexcept {
   } while (came < 0 && errno == EINTR);
   ZP_REQUIRE(came > 0);
   for (long i = 0; i < came; ++i) {
-    Piece& piece = pieces_[events[static_cast<std::size_t>(i)].data];
+    Piece& piece = place_of(events[static_cast<std::size_t>(i)].data);
     piece.state = Piece::State::kThere;
     piece.bytes = events[static_cast<std::size_t>(i)].res;
   }
