@@ -13,16 +13,16 @@
 namespace zonepack {
 
 void populate(std::byte* begin, std::size_t size) noexcept {
+  if (size == 0) return;
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-  const std::size_t before = (page - reinterpret_cast<std::uintptr_t>(begin) % page) % page;
-  if (size < before + page) return;
-  std::byte* const first = begin + before;
-  const std::size_t whole = (size - before) / page * page;
-  if (::madvise(first, whole, MADV_POPULATE_WRITE) == 0) return;
-  for (std::size_t at = 0; at < whole; at += page) {
-    auto* const byte = const_cast<volatile std::byte*>(first + at);
+  const std::size_t before = reinterpret_cast<std::uintptr_t>(begin) % page;
+  if (::madvise(begin - before, before + size, MADV_POPULATE_WRITE) == 0) return;
+  const auto touch = [begin](std::size_t at) {
+    auto* const byte = const_cast<volatile std::byte*>(begin + at);
     *byte = *byte;
-  }
+  };
+  for (std::size_t at = 0; at < size; at += page) touch(at);
+  touch(size - 1);
 }
 
 }  // namespace zonepack
