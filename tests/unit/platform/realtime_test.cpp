@@ -38,9 +38,10 @@ TEST(Thread, SaysWhyItCannotRunAsAskedAndLeavesNoThread) {
 
 TEST(Thread, UsesItsStackWithoutAFault) {
   std::uint64_t faults = 1;
-  auto thread = Thread::start({.name = "zp-test"}, false, [&] {
+  // Of a size that has room for what the thread sanitizer keeps of it for itself.
+  auto thread = Thread::start({.name = "zp-test", .stack_bytes = 2 << 20}, false, [&] {
     const ThreadUsage before = thread_usage();
-    volatile char used[100 * 1024];
+    volatile char used[1 << 20];
     for (std::size_t at = 0; at < sizeof used; at += 4096) used[at] = 1;
     faults = thread_usage().minor_faults - before.minor_faults;
   });

@@ -37,9 +37,9 @@ class Storage : public testing::TestWithParam<ReadMode> {
 TEST_P(Storage, BringsTheSameBytesWhereverAWindowStarts) {
   const NumberedFile file(300'001);
   for (const bool ahead : {false, true}) {
+    StorageFile opened = open(file);
+    EXPECT_EQ(opened.size(), 300'001u);
     for (const std::uint64_t offset : {0ul, 1ul, 511ul, 512ul, 4095ul, 4096ul, 200'000ul}) {
-      StorageFile opened = open(file);
-      EXPECT_EQ(opened.size(), 300'001u);
       if (ahead) opened.read_ahead(offset, 300'001 - offset);
       const auto window = opened.read_window(offset, kBufferBytes, buffer_);
       ASSERT_TRUE(window) << offset;
@@ -55,8 +55,7 @@ TEST_P(Storage, BringsTheSameBytesWhereverAWindowStarts) {
 TEST_P(Storage, BringsAFileLargerThanTheQueueWhileItReadsAhead) {
   constexpr std::uint64_t kBytes = 3 * ReadQueue::kBytes + 12'345;
   const NumberedFile file(kBytes);
-  for (const std::size_t size :
-       {kBufferBytes, std::size_t{50'000}}) {  // wraps within a window, too
+  for (const std::size_t size : {kBufferBytes, std::size_t{50'000}}) {  // the second wraps inside
     StorageFile opened = open(file);
     std::uint64_t asked = 0;
     for (std::uint64_t at = 0; at < kBytes; at += size) {
