@@ -30,10 +30,9 @@ const Fields<LoadingSettings>& loading_fields() {
   using S = LoadingSettings;
   static const Fields<S> fields = {
       {"read", &S::read, 0, 0, "",
-       "how packs are read: past the page cache, several requests at once (buffered where the file "
-       "system has no such reads), from mapped windows, or through the cache; none leaves more "
-       "than "
-       "4 MiB there"},
+       "how packs are read: past the page cache, several requests at once (buffered where the "
+       "file system has no such reads), from mapped windows, or through the cache; none leaves "
+       "more than 4 MiB there"},
       {"rate_limit", &S::rate_limit, 0, 1e12, "bytes/s", "most that is read of packs, 0: no limit"},
       {"storage_rate", &S::storage_rate, 1000, 1e12, "bytes/s", "reading of packs; --storage-rate"},
       {"decode_rate", &S::decode_rate, 1000, 1e12, "bytes/s", "decoding, of decoded bytes"},

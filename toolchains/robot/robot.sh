@@ -53,11 +53,12 @@ guest_tests() {  # [BOOT-OPTIONS]: names of all tests, or of those with these op
 # Each test once, those with the same boot options together; prints a line for each. Recordings made there are in
 # build/robot/FLAVOUR/recordings.
 run_guest_tests() {  # [TEST...], all by default
-  local out=build/robot/$flavour boot failed=0 test
+  local out=build/robot/$flavour boot failed=0 test why
   local -a asked=("$@") tests=()
   ((${#asked[@]})) || mapfile -t asked < <(guest_tests)
   for test in "${asked[@]}"; do
-    if [ -n "$(hindrance_of "$test")" ]; then echo "not run: $test: $(hindrance_of "$test")"; else tests+=("$test"); fi
+    why=$(hindrance_of "$test")
+    if [ -n "$why" ]; then echo "not run: $test: $why"; else tests+=("$test"); fi
   done
   rm -rf "$out/recordings"
   mkdir -p "$out/recordings"

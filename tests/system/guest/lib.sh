@@ -3,12 +3,11 @@
 #
 # A test is one file NAME_test.sh: a sentence in its comment, exit status 0 when it holds, and says in its last line
 # of output what it found. It may need, in a line "# boot: OPTION...", one of toolchains/robot/boot.sh's options;
-# tests with the same options share a boot, in order of their names, each in a new folder. A line "# not on FLAVOUR: WHY"
-# tells that a kernel cannot run it. There are: zoned and
-# can-utils, ip, gpiod's tools and busybox in PATH; /payload/data (tests/data without databases), /payload/map (the
-# sample map), /payload/map2 (another version of it), /payload/budget (the smallest that map needs, in bytes),
-# /payload/bin (contract tests), /payload/events.jsonl (what the host decided in the sample run). What a test leaves in
-# /data/out goes to the host.
+# tests with the same options share a boot, in order of their names, each in a new folder. A line
+# "# not on FLAVOUR: WHY" tells that a kernel cannot run it. There are: zoned and can-utils, ip, gpiod's tools and
+# busybox in PATH; /payload/data (tests/data without databases), /payload/map (the sample map), /payload/map2 (another
+# version of it), /payload/budget (the smallest that map needs, in bytes), /payload/bin (contract tests),
+# /payload/events.jsonl (what the host decided in the sample run). What a test leaves in /data/out goes to the host.
 set -eu
 data=/payload/data
 run=$data/scenario1_loop
