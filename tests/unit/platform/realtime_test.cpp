@@ -38,10 +38,12 @@ TEST(Thread, SaysWhyItCannotRunAsAskedAndLeavesNoThread) {
 
 TEST(Thread, UsesItsStackWithoutAFault) {
   std::uint64_t faults = 1;
-  // Of a size that has room for what the thread sanitizer keeps of it for itself.
-  auto thread = Thread::start({.name = "zp-test", .stack_bytes = 2 << 20}, false, [&] {
+#ifdef __SANITIZE_THREAD__
+  GTEST_SKIP() << "the thread sanitizer keeps most of a stack for itself";
+#endif
+  auto thread = Thread::start({.name = "zp-test"}, false, [&] {
     const ThreadUsage before = thread_usage();
-    volatile char used[1 << 20];
+    volatile char used[160 * 1024];
     for (std::size_t at = 0; at < sizeof used; at += 4096) used[at] = 1;
     faults = thread_usage().minor_faults - before.minor_faults;
   });
