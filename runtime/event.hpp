@@ -17,8 +17,8 @@ enum class EventKind : std::uint8_t {
   kCorrectionRejected,  // reason: the filter's verdict
   kOdometryStale,       // no sample for longer than the timeout
   kOdometryResumed,
-  kBusOff,        // the CAN controller left the bus for too many errors
-  kBusRestarted,  // and was started again
+  kBusOff,         // the CAN controller left the bus for too many errors
+  kBusRestarted,   // and was started again
   kZoneEntered,    // the tracker's zone changed
   kZoneWanted,     // entered, approached, a hypothesis or pinned: to be resident
   kZoneUnwanted,   // no longer so
@@ -30,10 +30,10 @@ enum class EventKind : std::uint8_t {
   kEvicted,
   kBlocked,  // a wanted zone does not fit beside what must stay
   kUnblocked,
-  kNotKeepingUp,  // the robot entered a zone that is not resident
-  kMapOffered,    // another version of the map is to be taken
-  kMapChanged,    // it was; zones from here on are the new map's
-  kMapRefused,    // it was not, reason says why: the old one stays
+  kNotKeepingUp,   // the robot entered a zone that is not resident
+  kMapOffered,     // another version of the map is to be taken
+  kMapChanged,     // it was; zones from here on are the new map's
+  kMapRefused,     // it was not, reason says why: the old one stays
   kDocked,         // the dock's contact closed: the pose is where the dock is, and trusted
   kUndocked,       // it opened
   kHoldBegun,      // the hold line: nothing is evicted until

@@ -43,7 +43,7 @@ struct BuildSummary {
   std::size_t unlinked_dropped = 0;
   std::vector<Orphan> orphans;
   std::size_t orphans_dropped = 0;
-  std::vector<Damage> damages;        // of signatures skipped
+  std::vector<Damage> damages;  // of signatures skipped
   std::vector<SplitZone> split;
   std::vector<std::string> warnings;  // complete sentences
   std::vector<std::string> zone_names;

@@ -18,7 +18,8 @@ bool is_cells(fb::Part part) {
 }
 
 std::optional<std::string> fault_of_column(const fb::Record& record, const ColumnView& column) {
-  if (is_attribute(column.field()) && record.first_row() != 0) return "repeats an attribute of the first record";
+  if (is_attribute(column.field()) && record.first_row() != 0)
+    return "repeats an attribute of the first record";
   if (column.codec() == fb::ColumnCodec::Subset && !is_cells(record.part())) {
     return "refers to points of the scan, which only grid cells do";
   }

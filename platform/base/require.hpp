@@ -8,6 +8,7 @@ namespace zonepack {
 
 }  // namespace zonepack
 
-// On in every build: an invariant that does not hold would mean memory or motion nobody vouches for.
+// On in every build: an invariant that does not hold would mean memory or motion nobody vouches
+// for.
 #define ZP_REQUIRE(condition) \
   ((condition) ? static_cast<void>(0) : ::zonepack::require_failed(#condition, __FILE__, __LINE__))

@@ -13,21 +13,21 @@ namespace zonepack {
 // turns them into a message with the file, zone or key that it knows.
 enum class ErrorCode : std::uint16_t {
   kOk = 0,
-  kNotFound,         // a file, zone or key that does not exist
-  kIo,               // the system refused to read or write; detail is errno
-  kTooLarge,         // over a limit of the format or the budget; detail is the need in bytes or items
-  kTruncated,        // fewer bytes than the structure declares; detail is the offset
-  kBadMagic,         // not a file of this kind
-  kBadVersion,       // a format version this reader does not read; detail is the version
-  kBadChecksum,      // bytes are not those that were written; detail is the offset
-  kBadCompression,   // LZ4 block does not decode to its declared size
-  kBadStructure,     // FlatBuffer or table breaks its rules
-  kBadValue,         // a value outside its documented range
-  kMismatch,         // two places that must agree do not (manifest and pack, pack and chunk)
-  kExists,           // a name is taken
-  kBusy,             // cannot be done now; try again later
-  kNoRoom,           // fits only if something protected were evicted
-  kCancelled,        // given up on request
+  kNotFound,     // a file, zone or key that does not exist
+  kIo,           // the system refused to read or write; detail is errno
+  kTooLarge,     // over a limit of the format or the budget; detail is the need in bytes or items
+  kTruncated,    // fewer bytes than the structure declares; detail is the offset
+  kBadMagic,     // not a file of this kind
+  kBadVersion,   // a format version this reader does not read; detail is the version
+  kBadChecksum,  // bytes are not those that were written; detail is the offset
+  kBadCompression,  // LZ4 block does not decode to its declared size
+  kBadStructure,    // FlatBuffer or table breaks its rules
+  kBadValue,        // a value outside its documented range
+  kMismatch,        // two places that must agree do not (manifest and pack, pack and chunk)
+  kExists,          // a name is taken
+  kBusy,            // cannot be done now; try again later
+  kNoRoom,          // fits only if something protected were evicted
+  kCancelled,       // given up on request
 };
 
 struct Error {

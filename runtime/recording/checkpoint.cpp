@@ -39,8 +39,7 @@ std::vector<std::byte> write_checkpoint(const Checkpoint& checkpoint) {
   out.i64(checkpoint.start_ns);
   const bool other_map = checkpoint.map != 1 || checkpoint.offered_map != 0;
   out.u8(static_cast<std::uint8_t>((checkpoint.has_pose ? kHasPose : 0) |
-                                   (checkpoint.frozen ? kFrozen : 0) |
-                                   (other_map ? kOtherMap : 0) |
+                                   (checkpoint.frozen ? kFrozen : 0) | (other_map ? kOtherMap : 0) |
                                    (checkpoint.held ? kHeld : 0)));
   out.f64(checkpoint.T_map_base.x_m);
   out.f64(checkpoint.T_map_base.y_m);

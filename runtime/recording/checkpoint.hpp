@@ -33,9 +33,9 @@ struct Checkpoint {
   ZoneId zone = kNoZone;          // the robot's own
   bool frozen = false;            // by command
   bool held = false;              // by the hold line
-  std::vector<Held> resident;  // used longest ago first
-  std::vector<ZoneId> pinned;  // asked for, beside those of the settings
-  std::vector<ZoneId> route;   // the hint in force
+  std::vector<Held> resident;     // used longest ago first
+  std::vector<ZoneId> pinned;     // asked for, beside those of the settings
+  std::vector<ZoneId> route;      // the hint in force
 };
 
 // The content of a checkpoint block. A map with more resident zones than a block has room for

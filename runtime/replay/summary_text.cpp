@@ -61,8 +61,8 @@ std::string error_json(const std::optional<PoseError>& error) {
 
 std::string timing_json(const LiveFigures::Timing& timing) {
   return "{\"p50\": " + shortest(timing.p50) + ", \"p99\": " + shortest(timing.p99) +
-         ", \"p999\": " + shortest(timing.p999) +
-         ", \"p9999\": " + shortest(timing.p9999) + ", \"max\": " + shortest(timing.max) + "}";
+         ", \"p999\": " + shortest(timing.p999) + ", \"p9999\": " + shortest(timing.p9999) +
+         ", \"max\": " + shortest(timing.max) + "}";
 }
 
 std::string worst_json(const LiveFigures::Worst& worst) {
@@ -141,8 +141,7 @@ std::string summary_table(const RunSummary& s) {
   row("zones loaded", count(s.zones_loaded) + ", unloaded " + count(s.zones_unloaded));
   row("read from storage", bytes_text(s.bytes_loaded));
   row("zone switches", count(s.zone_switches));
-  row("first zone resident",
-      s.zones_loaded == 0 ? "never" : "after " + fixed(s.start_s, 2) + " s");
+  row("first zone resident", s.zones_loaded == 0 ? "never" : "after " + fixed(s.start_s, 2) + " s");
   row("own zone absent", fixed(s.zone_absent_s, 2) + " s");
   row("waiting for room", fixed(s.blocked_s, 2) + " s");
   row("in a wrong zone", fixed(s.wrong_zone_s, 2) + " s");

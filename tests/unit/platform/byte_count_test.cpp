@@ -15,8 +15,9 @@ TEST(ByteCount, ReadsIntegersAndBinarySuffixes) {
 }
 
 TEST(ByteCount, RefusesEverythingElse) {
-  for (const char* text : {"", "KiB", "-1", "+1", " 1", "1 ", "1.5MiB", "1MB", "1kib", "1KiBKiB", "0x10",
-                           "9223372036854775808", "8589934592GiB", "18446744073709551616"}) {
+  for (const char* text :
+       {"", "KiB", "-1", "+1", " 1", "1 ", "1.5MiB", "1MB", "1kib", "1KiBKiB", "0x10",
+        "9223372036854775808", "8589934592GiB", "18446744073709551616"}) {
     EXPECT_EQ(parse_byte_count(text), std::nullopt) << text;
   }
 }

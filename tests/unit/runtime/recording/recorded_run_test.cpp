@@ -51,9 +51,10 @@ TEST_F(RecordedRunTest, GivesTheSameEventsByteForByte) {
     ASSERT_EQ(text_of(path("again.jsonl")), text_of(path("live.jsonl"))) << "seed " << seed;
   }
   // The drives were worth it: every kind of trouble came.
-  for (const char* word : {"load_cancelled", "load_given_up", "load_failed", "evicted", "blocked",
-                           "zone_entered", "correction_rejected", "not_keeping_up", "docked", "undocked",
-                           "hold_begun", "hold_ended", "zone_confirmed", "marker_ignored"}) {
+  for (const char* word :
+       {"load_cancelled", "load_given_up", "load_failed", "evicted", "blocked", "zone_entered",
+        "correction_rejected", "not_keeping_up", "docked", "undocked", "hold_begun", "hold_ended",
+        "zone_confirmed", "marker_ignored"}) {
     EXPECT_TRUE(drive.words.contains(word)) << word;
   }
 }
