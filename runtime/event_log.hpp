@@ -10,7 +10,7 @@
 
 #include "platform/atomic_file.hpp"
 #include "platform/base/result.hpp"
-#include "runtime/event.hpp"
+#include "runtime/control/event.hpp"
 
 namespace zonepack {
 

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "runtime/control/event.hpp"
 #include "runtime/ctl/figures.hpp"
-#include "runtime/event.hpp"
 
 namespace zonepack {
 namespace {

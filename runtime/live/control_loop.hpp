@@ -10,11 +10,11 @@
 #include "platform/realtime.hpp"
 #include "platform/seqlock.hpp"
 #include "platform/spsc_queue.hpp"
-#include "runtime/input_sink.hpp"
+#include "runtime/control/input_sink.hpp"
+#include "runtime/control/map_run.hpp"
 #include "runtime/live/histogram.hpp"
 #include "runtime/live/live_notes.hpp"
 #include "runtime/live/live_status.hpp"
-#include "runtime/map_run.hpp"
 
 namespace zonepack {
 

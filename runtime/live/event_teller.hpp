@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "runtime/event.hpp"
+#include "runtime/control/event.hpp"
 #include "runtime/replay/run_map.hpp"
 
 namespace zonepack {

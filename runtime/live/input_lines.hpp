@@ -10,7 +10,7 @@
 #include "platform/gpio_line.hpp"
 #include "platform/realtime.hpp"
 #include "platform/spsc_queue.hpp"
-#include "runtime/line_edge.hpp"
+#include "runtime/control/line_edge.hpp"
 #include "runtime/live/line_board.hpp"
 #include "runtime/live/line_requests.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "runtime/line_edge.hpp"
+#include "runtime/control/line_edge.hpp"
 
 namespace zonepack {
 namespace {

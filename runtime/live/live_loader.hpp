@@ -11,12 +11,12 @@
 #include "platform/seqlock.hpp"
 #include "platform/spsc_queue.hpp"
 #include "platform/wakeup.hpp"
+#include "runtime/control/zone_loader.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/map/loader.hpp"
 #include "runtime/map/rate_limit.hpp"
 #include "runtime/memory/shared_map.hpp"
 #include "runtime/memory/slot_pool.hpp"
-#include "runtime/zone_loader.hpp"
 
 namespace zonepack {
 

@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "platform/spsc_queue.hpp"
-#include "runtime/event.hpp"
+#include "runtime/control/event.hpp"
 #include "runtime/live/live_status.hpp"
 #include "runtime/replay/run_recorder.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
-#include "runtime/event.hpp"
+#include "runtime/control/event.hpp"
 #include "runtime/recording/input_tap.hpp"
 #include "runtime/recording/input_writer.hpp"
 #include "runtime/recording/preface.hpp"

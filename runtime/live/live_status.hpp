@@ -6,7 +6,7 @@
 
 #include "platform/base/byte_count.hpp"
 #include "platform/can_bus.hpp"
-#include "runtime/cycle.hpp"
+#include "runtime/control/cycle.hpp"
 #include "runtime/memory/residency.hpp"
 
 namespace zonepack {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "platform/base/result.hpp"
-#include "runtime/command.hpp"
-#include "runtime/event.hpp"
-#include "runtime/line_edge.hpp"
+#include "runtime/control/command.hpp"
+#include "runtime/control/event.hpp"
+#include "runtime/control/line_edge.hpp"
 #include "runtime/odometry/pose.hpp"
 #include "runtime/recording/bytes.hpp"
 

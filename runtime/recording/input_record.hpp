@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "platform/base/result.hpp"
-#include "runtime/cycle.hpp"
+#include "runtime/control/cycle.hpp"
 #include "runtime/recording/bytes.hpp"
 
 // What one cycle was given, as RECORDING.md lays it out under "Records".

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "runtime/cycle.hpp"
-#include "runtime/input_sink.hpp"
+#include "runtime/control/cycle.hpp"
+#include "runtime/control/input_sink.hpp"
 #include "runtime/recording/byte_ring.hpp"
 #include "runtime/recording/bytes.hpp"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/event.hpp"
+#include "runtime/control/event.hpp"
 #include "runtime/recording/checkpoint.hpp"
 #include "runtime/recording/cycle_block.hpp"
 #include "runtime/recording/flight_recorder.hpp"

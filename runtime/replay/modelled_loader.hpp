@@ -9,8 +9,8 @@
 
 #include "platform/base/byte_count.hpp"
 #include "platform/base/result.hpp"
+#include "runtime/control/zone_loader.hpp"
 #include "runtime/memory/slot_pool.hpp"
-#include "runtime/zone_loader.hpp"
 
 namespace zonepack {
 

@@ -3,8 +3,8 @@
 
 #include <optional>
 
+#include "runtime/control/zone_loader.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/zone_loader.hpp"
 
 namespace zonepack {
 

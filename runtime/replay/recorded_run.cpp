@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "platform/base/require.hpp"
+#include "runtime/control/map_run.hpp"
 #include "runtime/event_log.hpp"
-#include "runtime/map_run.hpp"
 #include "runtime/replay/recorded_loader.hpp"
 #include "runtime/replay/run_inputs.hpp"
 #include "runtime/replay/run_map.hpp"

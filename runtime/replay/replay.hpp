@@ -8,7 +8,7 @@
 
 #include "platform/base/byte_count.hpp"
 #include "platform/sim/sim_can_bus.hpp"
-#include "runtime/cycle.hpp"
+#include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/replay/driven_map.hpp"
 #include "runtime/replay/run_files.hpp"

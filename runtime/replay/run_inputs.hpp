@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
-#include "runtime/cycle.hpp"
+#include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/odometry/pose.hpp"
 #include "runtime/replay/driven_map.hpp"

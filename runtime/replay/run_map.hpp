@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "runtime/cycle.hpp"
-#include "runtime/map_run.hpp"
+#include "runtime/control/cycle.hpp"
+#include "runtime/control/map_run.hpp"
 #include "runtime/replay/driven_map.hpp"
 
 namespace zonepack {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "runtime/cycle.hpp"
-#include "runtime/event.hpp"
+#include "runtime/control/cycle.hpp"
+#include "runtime/control/event.hpp"
 #include "runtime/memory/residency.hpp"
 #include "runtime/replay/run_files.hpp"
 #include "runtime/replay/run_summary.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "runtime/cycle.hpp"
+#include "runtime/control/cycle.hpp"
 #include "runtime/replay/driven_map.hpp"
 #include "runtime/replay/run_summary.hpp"
 #include "runtime/replay/run_trace.hpp"

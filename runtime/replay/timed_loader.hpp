@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "runtime/control/zone_loader.hpp"
 #include "runtime/replay/map_model.hpp"
 #include "runtime/replay/modelled_loader.hpp"
-#include "runtime/zone_loader.hpp"
 
 namespace zonepack {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/event.hpp"
+#include "runtime/control/event.hpp"
 #include "runtime/live/line_board.hpp"
 #include "runtime/live/live_status.hpp"
 #include "runtime/serve/messages.hpp"

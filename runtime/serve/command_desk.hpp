@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "platform/spsc_queue.hpp"
-#include "runtime/command.hpp"
+#include "runtime/control/command.hpp"
 #include "runtime/serve/zone_table.hpp"
 
 namespace zonepack {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
-#include "runtime/event.hpp"
+#include "runtime/control/event.hpp"
 #include "runtime/memory/residency.hpp"
 #include "runtime/pack_format/ids.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "runtime/line_edge.hpp"
+#include "runtime/control/line_edge.hpp"
 #include "runtime/settings/field.hpp"
 
 namespace zonepack {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "platform/realtime.hpp"
-#include "runtime/cycle.hpp"
+#include "runtime/control/cycle.hpp"
 #include "runtime/state/state_store.hpp"
 
 namespace zonepack {

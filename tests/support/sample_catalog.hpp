@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "runtime/cycle.hpp"
+#include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/pack_format/accounting.hpp"
 #include "tests/support/building.hpp"

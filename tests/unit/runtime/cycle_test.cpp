@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/cycle.hpp"
+#include "runtime/control/cycle.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/map_keeper.hpp"
+#include "runtime/control/map_keeper.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/map_run.hpp"
+#include "runtime/control/map_run.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "runtime/event.hpp"
+#include "runtime/control/event.hpp"
+#include "runtime/control/zone_loader.hpp"
 #include "runtime/memory/residency.hpp"
 #include "runtime/memory/zone_directory.hpp"
-#include "runtime/zone_loader.hpp"
 
 namespace zonepack {
 

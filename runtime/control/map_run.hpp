@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "runtime/cycle.hpp"
+#include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/memory/zone_directory.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "runtime/cycle.hpp"
+#include "runtime/control/cycle.hpp"
 
 namespace zonepack {
 

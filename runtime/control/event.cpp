@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/event.hpp"
+#include "runtime/control/event.hpp"
 
 #include "platform/base/require.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/command.hpp"
+#include "runtime/control/command.hpp"
 
 namespace zonepack {
 
