@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "runtime/event_log.hpp"
 #include "runtime/pack_format/checksum.hpp"
+#include "runtime/run/event_log.hpp"
 
 namespace zonepack {
 namespace {

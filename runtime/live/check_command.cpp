@@ -13,7 +13,7 @@
 #include "runtime/live/live_source.hpp"
 #include "runtime/map/loader.hpp"
 #include "runtime/memory/shared_layout.hpp"
-#include "runtime/replay/driven_map.hpp"
+#include "runtime/run/driven_map.hpp"
 
 namespace zonepack {
 namespace {

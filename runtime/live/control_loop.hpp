@@ -14,7 +14,7 @@
 #include "runtime/control/map_run.hpp"
 #include "runtime/live/histogram.hpp"
 #include "runtime/live/live_notes.hpp"
-#include "runtime/live/live_status.hpp"
+#include "runtime/run/live_status.hpp"
 
 namespace zonepack {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/control/event.hpp"
-#include "runtime/replay/run_map.hpp"
+#include "runtime/run/run_map.hpp"
 
 namespace zonepack {
 

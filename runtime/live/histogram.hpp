@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "runtime/live/live_status.hpp"
+#include "runtime/run/live_status.hpp"
 
 namespace zonepack {
 

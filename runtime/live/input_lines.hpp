@@ -11,8 +11,8 @@
 #include "platform/realtime.hpp"
 #include "platform/spsc_queue.hpp"
 #include "runtime/control/line_edge.hpp"
-#include "runtime/live/line_board.hpp"
 #include "runtime/live/line_requests.hpp"
+#include "runtime/run/line_board.hpp"
 
 namespace zonepack {
 

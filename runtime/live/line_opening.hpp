@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/live/line_board.hpp"
 #include "runtime/live/line_requests.hpp"
+#include "runtime/run/line_board.hpp"
 
 // How outputs and inputs are opened alike. A `Line` holds its `request`, its `row` on the board,
 // the opened `line` (null: it cannot be had) and `retry_ns`, when it is tried again.

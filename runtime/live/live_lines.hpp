@@ -7,8 +7,8 @@
 
 #include "platform/gpio_line.hpp"
 #include "runtime/live/input_lines.hpp"
-#include "runtime/live/line_board.hpp"
 #include "runtime/live/output_lines.hpp"
+#include "runtime/run/line_board.hpp"
 
 namespace zonepack {
 

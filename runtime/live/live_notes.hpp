@@ -6,8 +6,8 @@
 
 #include "platform/spsc_queue.hpp"
 #include "runtime/control/event.hpp"
-#include "runtime/live/live_status.hpp"
-#include "runtime/replay/run_recorder.hpp"
+#include "runtime/run/live_status.hpp"
+#include "runtime/run/run_recorder.hpp"
 
 namespace zonepack {
 

@@ -11,7 +11,6 @@
 #include "platform/realtime.hpp"
 #include "platform/seqlock.hpp"
 #include "platform/spsc_queue.hpp"
-#include "runtime/event_log.hpp"
 #include "runtime/live/can_recorder.hpp"
 #include "runtime/live/control_loop.hpp"
 #include "runtime/live/event_teller.hpp"
@@ -23,7 +22,8 @@
 #include "runtime/live/scribe.hpp"
 #include "runtime/live/service.hpp"
 #include "runtime/memory/shared_map.hpp"
-#include "runtime/replay/run_recorder.hpp"
+#include "runtime/run/event_log.hpp"
+#include "runtime/run/run_recorder.hpp"
 #include "runtime/state/state_saver.hpp"
 
 namespace zonepack {

@@ -11,9 +11,9 @@
 #include "runtime/live/can_source.hpp"
 #include "runtime/live/live_memory.hpp"
 #include "runtime/live/live_recorder.hpp"
-#include "runtime/replay/run_inputs.hpp"
-#include "runtime/replay/run_map.hpp"
-#include "runtime/replay/run_summary.hpp"
+#include "runtime/run/run_inputs.hpp"
+#include "runtime/run/run_map.hpp"
+#include "runtime/run/run_summary.hpp"
 
 namespace zonepack {
 

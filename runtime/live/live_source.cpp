@@ -9,7 +9,7 @@
 #include "runtime/live/log_feed.hpp"
 #include "runtime/live/robot_clock.hpp"
 #include "runtime/live/script_source.hpp"
-#include "runtime/replay/run_inputs.hpp"
+#include "runtime/run/run_inputs.hpp"
 
 namespace zonepack {
 namespace {

@@ -8,7 +8,7 @@
 #include "platform/storage.hpp"
 #include "runtime/map/next_version.hpp"
 #include "runtime/pack_format/manifest_file.hpp"
-#include "runtime/replay/run_inputs.hpp"
+#include "runtime/run/run_inputs.hpp"
 
 namespace zonepack {
 

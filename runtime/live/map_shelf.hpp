@@ -7,7 +7,7 @@
 #include <mutex>
 #include <vector>
 
-#include "runtime/replay/run_map.hpp"
+#include "runtime/run/run_map.hpp"
 
 namespace zonepack {
 

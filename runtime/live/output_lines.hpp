@@ -11,9 +11,9 @@
 #include "platform/gpio_line.hpp"
 #include "platform/realtime.hpp"
 #include "runtime/live/histogram.hpp"
-#include "runtime/live/line_board.hpp"
 #include "runtime/live/line_requests.hpp"
-#include "runtime/live/live_status.hpp"
+#include "runtime/run/line_board.hpp"
+#include "runtime/run/live_status.hpp"
 
 namespace zonepack {
 

@@ -13,8 +13,8 @@
 #include "runtime/live/live_memory.hpp"
 #include "runtime/live/live_run.hpp"
 #include "runtime/pack_format/manifest_file.hpp"
-#include "runtime/replay/log_faults.hpp"
-#include "runtime/replay/summary_text.hpp"
+#include "runtime/run/log_faults.hpp"
+#include "runtime/run/summary_text.hpp"
 
 namespace zonepack {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "runtime/live/can_source.hpp"
-#include "runtime/replay/run_inputs.hpp"
+#include "runtime/run/run_inputs.hpp"
 
 namespace zonepack {
 

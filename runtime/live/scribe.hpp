@@ -8,8 +8,8 @@
 #include "platform/realtime.hpp"
 #include "platform/spsc_queue.hpp"
 #include "runtime/live/live_notes.hpp"
-#include "runtime/replay/run_map.hpp"
-#include "runtime/replay/run_recorder.hpp"
+#include "runtime/run/run_map.hpp"
+#include "runtime/run/run_recorder.hpp"
 
 namespace zonepack {
 

@@ -12,7 +12,7 @@
 #include "platform/realtime.hpp"
 #include "platform/spsc_queue.hpp"
 #include "runtime/live/live_memory.hpp"
-#include "runtime/replay/run_map.hpp"
+#include "runtime/run/run_map.hpp"
 #include "runtime/serve/server.hpp"
 
 namespace zonepack {

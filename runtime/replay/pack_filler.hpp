@@ -7,7 +7,7 @@
 
 #include "runtime/map/catalog.hpp"
 #include "runtime/memory/arena.hpp"
-#include "runtime/replay/modelled_loader.hpp"
+#include "runtime/run/modelled_loader.hpp"
 
 namespace zonepack {
 

@@ -9,13 +9,13 @@
 
 #include "platform/base/require.hpp"
 #include "runtime/control/map_run.hpp"
-#include "runtime/event_log.hpp"
 #include "runtime/replay/recorded_loader.hpp"
-#include "runtime/replay/run_inputs.hpp"
-#include "runtime/replay/run_map.hpp"
-#include "runtime/replay/run_recorder.hpp"
-#include "runtime/replay/run_result.hpp"
 #include "runtime/replay/timed_loader.hpp"
+#include "runtime/run/event_log.hpp"
+#include "runtime/run/run_inputs.hpp"
+#include "runtime/run/run_map.hpp"
+#include "runtime/run/run_recorder.hpp"
+#include "runtime/run/run_result.hpp"
 
 namespace zonepack {
 namespace {

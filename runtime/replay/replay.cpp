@@ -6,12 +6,12 @@
 #include <memory>
 #include <utility>
 
-#include "runtime/event_log.hpp"
-#include "runtime/replay/driven_map.hpp"
 #include "runtime/replay/pack_filler.hpp"
-#include "runtime/replay/run_inputs.hpp"
-#include "runtime/replay/run_recorder.hpp"
-#include "runtime/replay/run_result.hpp"
+#include "runtime/run/driven_map.hpp"
+#include "runtime/run/event_log.hpp"
+#include "runtime/run/run_inputs.hpp"
+#include "runtime/run/run_recorder.hpp"
+#include "runtime/run/run_result.hpp"
 
 namespace zonepack {
 namespace {

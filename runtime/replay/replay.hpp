@@ -10,10 +10,10 @@
 #include "platform/sim/sim_can_bus.hpp"
 #include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/replay/driven_map.hpp"
-#include "runtime/replay/run_files.hpp"
-#include "runtime/replay/run_summary.hpp"
-#include "runtime/replay/run_trace.hpp"
+#include "runtime/run/driven_map.hpp"
+#include "runtime/run/run_files.hpp"
+#include "runtime/run/run_summary.hpp"
+#include "runtime/run/run_trace.hpp"
 
 namespace zonepack {
 

@@ -7,12 +7,12 @@
 
 #include "platform/can_log.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/replay/baseline.hpp"
-#include "runtime/replay/log_faults.hpp"
 #include "runtime/replay/recorded_run.hpp"
 #include "runtime/replay/replay.hpp"
-#include "runtime/replay/run_report.hpp"
-#include "runtime/replay/summary_text.hpp"
+#include "runtime/run/baseline.hpp"
+#include "runtime/run/log_faults.hpp"
+#include "runtime/run/run_report.hpp"
+#include "runtime/run/summary_text.hpp"
 
 namespace zonepack {
 namespace {

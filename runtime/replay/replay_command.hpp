@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runtime/replay/run_inputs.hpp"
+#include "runtime/run/run_inputs.hpp"
 
 namespace zonepack {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "runtime/control/zone_loader.hpp"
-#include "runtime/replay/map_model.hpp"
-#include "runtime/replay/modelled_loader.hpp"
+#include "runtime/run/map_model.hpp"
+#include "runtime/run/modelled_loader.hpp"
 
 namespace zonepack {
 

@@ -9,9 +9,9 @@
 #include "platform/spsc_queue.hpp"
 #include "runtime/control/command.hpp"
 #include "runtime/control/event.hpp"
-#include "runtime/live/line_board.hpp"
-#include "runtime/live/live_status.hpp"
 #include "runtime/odometry/pose_filter.hpp"
+#include "runtime/run/line_board.hpp"
+#include "runtime/run/live_status.hpp"
 #include "runtime/serve/zone_table.hpp"
 
 namespace zonepack {

@@ -19,8 +19,8 @@ set(zonepack_alone
   runtime/recording/map_block.cpp
   runtime/recording/preface.cpp
   runtime/replay/replay.cpp
-  runtime/replay/run_files.cpp
-  runtime/replay/summary_text.cpp
+  runtime/run/run_files.cpp
+  runtime/run/summary_text.cpp
   runtime/report/floor_plan.cpp
   runtime/settings/settings_reference.cpp
   runtime/settings/yaml_section.cpp

@@ -8,7 +8,7 @@
 #include "runtime/control/map_keeper.hpp"
 #include "runtime/map/loader.hpp"
 #include "runtime/memory/arena.hpp"
-#include "runtime/replay/map_model.hpp"
+#include "runtime/run/map_model.hpp"
 #include "runtime/serve/server.hpp"
 #include "runtime/zones/preload.hpp"
 #include "runtime/zones/tracker.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "platform/can_errors.hpp"
-#include "runtime/replay/modelled_loader.hpp"
+#include "runtime/run/modelled_loader.hpp"
 #include "tests/support/rooms.hpp"
 #include "tests/support/sample_catalog.hpp"
 #include "tests/unit/runtime/allocation_count.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/replay/modelled_loader.hpp"
+#include "runtime/run/modelled_loader.hpp"
 #include "tests/support/rooms.hpp"
 #include "tests/support/sample_catalog.hpp"
 

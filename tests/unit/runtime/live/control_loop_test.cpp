@@ -9,7 +9,7 @@
 
 #include "platform/clock.hpp"
 #include "platform/sim/sim_can_bus.hpp"
-#include "runtime/replay/modelled_loader.hpp"
+#include "runtime/run/modelled_loader.hpp"
 #include "tests/support/rooms.hpp"
 #include "tests/support/sample_catalog.hpp"
 

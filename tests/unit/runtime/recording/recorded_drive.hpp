@@ -13,15 +13,15 @@
 
 #include "platform/can_log.hpp"
 #include "platform/sim/sim_can_bus.hpp"
-#include "runtime/event_log.hpp"
 #include "runtime/recording/input_tap.hpp"
 #include "runtime/recording/input_writer.hpp"
 #include "runtime/recording/preface.hpp"
-#include "runtime/replay/driven_map.hpp"
-#include "runtime/replay/modelled_loader.hpp"
 #include "runtime/replay/recorded_run.hpp"
-#include "runtime/replay/run_files.hpp"
-#include "runtime/replay/run_inputs.hpp"
+#include "runtime/run/driven_map.hpp"
+#include "runtime/run/event_log.hpp"
+#include "runtime/run/modelled_loader.hpp"
+#include "runtime/run/run_files.hpp"
+#include "runtime/run/run_inputs.hpp"
 #include "tests/support/sample_catalog.hpp"
 
 namespace zonepack::testing_support {

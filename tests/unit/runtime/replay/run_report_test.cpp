@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/replay/run_report.hpp"
+#include "runtime/run/run_report.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <tuple>
 
-#include "runtime/replay/run_figures.hpp"
+#include "runtime/run/run_figures.hpp"
 #include "tests/support/xml_check.hpp"
 
 namespace zonepack {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/replay/run_recorder.hpp"
+#include "runtime/run/run_recorder.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/replay/run_inputs.hpp"
+#include "runtime/run/run_inputs.hpp"
 
 #include <array>
 #include <charconv>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/replay/run_result.hpp"
+#include "runtime/run/run_result.hpp"
 
 namespace zonepack {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/replay/map_model.hpp"
+#include "runtime/run/map_model.hpp"
 
 #include <algorithm>
 

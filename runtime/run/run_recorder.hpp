@@ -9,9 +9,9 @@
 #include "runtime/control/cycle.hpp"
 #include "runtime/control/event.hpp"
 #include "runtime/memory/residency.hpp"
-#include "runtime/replay/run_files.hpp"
-#include "runtime/replay/run_summary.hpp"
-#include "runtime/replay/run_trace.hpp"
+#include "runtime/run/run_files.hpp"
+#include "runtime/run/run_summary.hpp"
+#include "runtime/run/run_trace.hpp"
 #include "runtime/zones/zone_graph.hpp"
 
 namespace zonepack {

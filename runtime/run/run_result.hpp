@@ -2,9 +2,9 @@
 #pragma once
 
 #include "runtime/control/cycle.hpp"
-#include "runtime/replay/driven_map.hpp"
-#include "runtime/replay/run_summary.hpp"
-#include "runtime/replay/run_trace.hpp"
+#include "runtime/run/driven_map.hpp"
+#include "runtime/run/run_summary.hpp"
+#include "runtime/run/run_trace.hpp"
 
 namespace zonepack {
 

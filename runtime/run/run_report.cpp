@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/replay/run_report.hpp"
+#include "runtime/run/run_report.hpp"
 
 #include <algorithm>
 
-#include "runtime/replay/run_figures.hpp"
 #include "runtime/report/format.hpp"
+#include "runtime/run/run_figures.hpp"
 
 namespace zonepack {
 namespace {

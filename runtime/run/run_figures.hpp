@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "runtime/replay/baseline.hpp"
-#include "runtime/replay/run_trace.hpp"
 #include "runtime/report/chart.hpp"
 #include "runtime/report/floor_plan.hpp"
+#include "runtime/run/baseline.hpp"
+#include "runtime/run/run_trace.hpp"
 
 // The figures of a run report. Colours stand for zones, the same in every figure.
 namespace zonepack {

@@ -10,8 +10,8 @@
 #include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/odometry/pose.hpp"
-#include "runtime/replay/driven_map.hpp"
-#include "runtime/replay/run_files.hpp"
+#include "runtime/run/driven_map.hpp"
+#include "runtime/run/run_files.hpp"
 #include "runtime/settings/settings.hpp"
 
 namespace zonepack {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/replay/log_faults.hpp"
+#include "runtime/run/log_faults.hpp"
 
 #include <iostream>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/replay/baseline.hpp"
+#include "runtime/run/baseline.hpp"
 
 #include <algorithm>
 #include <array>

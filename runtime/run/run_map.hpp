@@ -9,7 +9,7 @@
 
 #include "runtime/control/cycle.hpp"
 #include "runtime/control/map_run.hpp"
-#include "runtime/replay/driven_map.hpp"
+#include "runtime/run/driven_map.hpp"
 
 namespace zonepack {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/replay/run_map.hpp"
+#include "runtime/run/run_map.hpp"
 
 #include "platform/base/require.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/replay/driven_map.hpp"
+#include "runtime/run/driven_map.hpp"
 
 #include <algorithm>
 
-#include "runtime/replay/map_model.hpp"
+#include "runtime/run/map_model.hpp"
 
 namespace zonepack {
 namespace {

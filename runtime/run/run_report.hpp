@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "runtime/replay/baseline.hpp"
-#include "runtime/replay/run_summary.hpp"
-#include "runtime/replay/run_trace.hpp"
 #include "runtime/report/report.hpp"
+#include "runtime/run/baseline.hpp"
+#include "runtime/run/run_summary.hpp"
+#include "runtime/run/run_trace.hpp"
 
 namespace zonepack {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "platform/seqlock.hpp"
-#include "runtime/live/live_status.hpp"
+#include "runtime/run/live_status.hpp"
 
 namespace zonepack {
 

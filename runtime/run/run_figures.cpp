@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/replay/run_figures.hpp"
+#include "runtime/run/run_figures.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/replay/modelled_loader.hpp"
+#include "runtime/run/modelled_loader.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/event_log.hpp"
+#include "runtime/run/event_log.hpp"
 
 #include <array>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/replay/summary_text.hpp"
+#include "runtime/run/summary_text.hpp"
 
 #include <array>
 #include <charconv>
@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "platform/atomic_file.hpp"
-#include "runtime/event_log.hpp"
+#include "runtime/run/event_log.hpp"
 
 namespace zonepack {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/replay/run_files.hpp"
+#include "runtime/run/run_files.hpp"
 
 #include <algorithm>
 #include <cerrno>

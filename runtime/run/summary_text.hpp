@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "runtime/replay/run_summary.hpp"
+#include "runtime/run/run_summary.hpp"
 
 namespace zonepack {
 

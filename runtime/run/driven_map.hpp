@@ -9,7 +9,7 @@
 
 #include "runtime/map/catalog.hpp"
 #include "runtime/memory/residency.hpp"
-#include "runtime/replay/modelled_loader.hpp"
+#include "runtime/run/modelled_loader.hpp"
 #include "runtime/zones/zone_graph.hpp"
 
 namespace zonepack {
