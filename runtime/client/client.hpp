@@ -14,7 +14,7 @@
 #include "platform/base/result.hpp"
 #include "platform/shared_memory.hpp"
 #include "runtime/client/shared_reader.hpp"
-#include "runtime/serve/connection.hpp"
+#include "runtime/protocol/connection.hpp"
 
 namespace zonepack {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "runtime/serve/connection.hpp"
+#include "runtime/protocol/connection.hpp"
 
 namespace zonepack {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/serve/messages.hpp"
+#include "runtime/protocol/messages.hpp"
 
 namespace zonepack {
 

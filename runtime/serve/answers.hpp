@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "runtime/control/event.hpp"
+#include "runtime/protocol/messages.hpp"
 #include "runtime/run/line_board.hpp"
 #include "runtime/run/live_status.hpp"
-#include "runtime/serve/messages.hpp"
 #include "runtime/serve/served_map.hpp"
 #include "runtime/zones/route.hpp"
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "runtime/odometry/pose_filter.hpp"
-#include "runtime/serve/protocol_generated.h"
+#include "runtime/protocol/protocol_generated.h"
 
 namespace zonepack {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "runtime/map/catalog.hpp"
-#include "runtime/serve/messages.hpp"
+#include "runtime/protocol/messages.hpp"
 #include "runtime/serve/node_store.hpp"
 #include "runtime/serve/zone_table.hpp"
 #include "runtime/zones/zone_graph.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "runtime/serve/messages.hpp"
+#include "runtime/protocol/messages.hpp"
 
 namespace zonepack {
 

@@ -8,7 +8,7 @@
 
 #include "platform/local_socket.hpp"
 #include "platform/shared_memory.hpp"
-#include "runtime/serve/messages.hpp"
+#include "runtime/protocol/messages.hpp"
 
 namespace zonepack::test_support {
 

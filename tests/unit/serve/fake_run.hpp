@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/serve/connection.hpp"
+#include "runtime/protocol/connection.hpp"
 #include "runtime/serve/server.hpp"
 #include "tests/support/rooms.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/serve/messages.hpp"
+#include "runtime/protocol/messages.hpp"
 
 #include "runtime/pack_format/struct_alignment.hpp"
 

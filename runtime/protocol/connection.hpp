@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "platform/local_socket.hpp"
-#include "runtime/serve/messages.hpp"
+#include "runtime/protocol/messages.hpp"
 
 namespace zonepack {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "platform/base/result.hpp"
-#include "runtime/serve/protocol_generated.h"
+#include "runtime/protocol/protocol_generated.h"
 
 // Messages of the socket as bytes, for both ends. PROTOCOL.md tells what they mean.
 namespace zonepack {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/serve/connection.hpp"
+#include "runtime/protocol/connection.hpp"
 
 #include <algorithm>
 #include <cstring>
