@@ -11,7 +11,7 @@
 #include "platform/shared_memory.hpp"
 #include "runtime/memory/arena_memory.hpp"
 #include "runtime/memory/shared_map.hpp"
-#include "runtime/serve/serve_settings.hpp"
+#include "runtime/settings/serve_settings.hpp"
 
 namespace zonepack {
 

@@ -12,10 +12,10 @@
 #include "platform/poller.hpp"
 #include "runtime/serve/answers.hpp"
 #include "runtime/serve/request_handler.hpp"
-#include "runtime/serve/serve_settings.hpp"
 #include "runtime/serve/served_map.hpp"
 #include "runtime/serve/server_ports.hpp"
 #include "runtime/serve/session.hpp"
+#include "runtime/settings/serve_settings.hpp"
 
 namespace zonepack {
 

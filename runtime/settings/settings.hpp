@@ -13,8 +13,8 @@
 #include "runtime/odometry/pose_filter.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
 #include "runtime/pack_format/chunk_view.hpp"
-#include "runtime/serve/serve_settings.hpp"
 #include "runtime/settings/gpio_settings.hpp"
+#include "runtime/settings/serve_settings.hpp"
 #include "runtime/zones/preload.hpp"
 #include "runtime/zones/tracker.hpp"
 
