@@ -6,12 +6,12 @@
 #include <memory>
 #include <string>
 
+#include "platform/slow_job.hpp"
 #include "runtime/live/control_loop.hpp"
 #include "runtime/live/live_loader.hpp"
 #include "runtime/live/live_recorder.hpp"
 #include "runtime/live/map_shelf.hpp"
 #include "runtime/live/service.hpp"
-#include "runtime/serve/slow_job.hpp"
 #include "runtime/settings/settings.hpp"
 
 namespace zonepack {

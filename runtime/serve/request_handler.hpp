@@ -4,12 +4,12 @@
 #include <cstdint>
 
 #include "platform/local_socket.hpp"
+#include "platform/slow_job.hpp"
 #include "runtime/serve/answers.hpp"
 #include "runtime/serve/command_desk.hpp"
 #include "runtime/serve/served_map.hpp"
 #include "runtime/serve/server_ports.hpp"
 #include "runtime/serve/session.hpp"
-#include "runtime/serve/slow_job.hpp"
 
 namespace zonepack {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/serve/slow_job.hpp"
+#include "platform/slow_job.hpp"
 
 #include <utility>
 
