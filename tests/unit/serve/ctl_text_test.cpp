@@ -8,8 +8,8 @@
 #include <set>
 #include <sstream>
 
-#include "runtime/ctl/figures.hpp"
-#include "runtime/ctl/watch_view.hpp"
+#include "runtime/ctl/commands/figures.hpp"
+#include "runtime/ctl/commands/watch_view.hpp"
 #include "runtime/serve/answers.hpp"
 #include "tests/unit/serve/fake_run.hpp"
 

@@ -2,9 +2,9 @@
 // zonectl watch: the view, five times a second.
 #include "platform/clock.hpp"
 #include "platform/terminal.hpp"
-#include "runtime/ctl/commands.hpp"
-#include "runtime/ctl/session.hpp"
-#include "runtime/ctl/watch_view.hpp"
+#include "runtime/ctl/commands/commands.hpp"
+#include "runtime/ctl/commands/session.hpp"
+#include "runtime/ctl/commands/watch_view.hpp"
 
 namespace zonepack {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/ctl/session.hpp"
+#include "runtime/ctl/commands/session.hpp"
 
 #include <cerrno>
 #include <cstring>

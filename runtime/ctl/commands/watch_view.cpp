@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/ctl/watch_view.hpp"
+#include "runtime/ctl/commands/watch_view.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "runtime/control/event.hpp"
-#include "runtime/ctl/figures.hpp"
+#include "runtime/ctl/commands/figures.hpp"
 
 namespace zonepack {
 namespace {

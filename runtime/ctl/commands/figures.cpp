@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/ctl/figures.hpp"
+#include "runtime/ctl/commands/figures.hpp"
 
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/ctl/commands.hpp"
+#include "runtime/ctl/commands/commands.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -8,9 +8,9 @@
 #include "platform/atomic_file.hpp"
 #include "platform/clock.hpp"
 #include "platform/terminal.hpp"
-#include "runtime/ctl/figures.hpp"
-#include "runtime/ctl/session.hpp"
-#include "runtime/ctl/watch_view.hpp"
+#include "runtime/ctl/commands/figures.hpp"
+#include "runtime/ctl/commands/session.hpp"
+#include "runtime/ctl/commands/watch_view.hpp"
 #include "runtime/odometry/det_math.hpp"
 #include "runtime/settings/settings.hpp"
 

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
-#include "runtime/ctl/commands.hpp"
+#include "runtime/ctl/commands/commands.hpp"
 
 namespace {
 
