@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "packer/build/map_builder.hpp"
-#include "packer/commands/command_line.hpp"
+#include "packer/console/command_line.hpp"
 
 namespace zonepack::packer {
 namespace {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "packer/commands/command_line.hpp"
+#include "packer/console/command_line.hpp"
 #include "packer/sources/rtabmap_database.hpp"
 #include "packer/zones/partition.hpp"
 

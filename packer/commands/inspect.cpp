@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "packer/commands/command_line.hpp"
+#include "packer/console/command_line.hpp"
 #include "packer/inspect/map_inspection.hpp"
 #include "packer/inspect/pack_inspection.hpp"
 

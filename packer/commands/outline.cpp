@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "packer/commands/command_line.hpp"
+#include "packer/console/command_line.hpp"
 #include "packer/outline/map_image.hpp"
 #include "packer/outline/occupancy_map.hpp"
 #include "packer/outline/paths.hpp"

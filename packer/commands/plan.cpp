@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "packer/commands/command_line.hpp"
+#include "packer/console/command_line.hpp"
 #include "packer/decode/map_reader.hpp"
 #include "packer/plan/map_plan.hpp"
 #include "runtime/report/format.hpp"

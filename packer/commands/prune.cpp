@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "packer/build/leftovers.hpp"
-#include "packer/commands/command_line.hpp"
+#include "packer/console/command_line.hpp"
 
 namespace zonepack::packer {
 namespace {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "packer/commands/command_line.hpp"
+#include "packer/console/command_line.hpp"
 #include "platform/storage.hpp"
 #include "runtime/pack_format/accounting.hpp"
 #include "runtime/pack_format/checksum.hpp"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "packer/commands/command_line.hpp"
+#include "packer/console/command_line.hpp"
 #include "packer/verify/map_verifier.hpp"
 #include "runtime/pack_format/manifest_file.hpp"
 

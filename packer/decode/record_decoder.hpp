@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 #include "runtime/pack_format/zone_view.hpp"
 
 namespace zonepack::packer {

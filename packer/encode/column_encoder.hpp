@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 #include "runtime/pack_format/bulk_chunk_generated.h"
 
 namespace zonepack::packer {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 
 namespace zonepack::packer {
 

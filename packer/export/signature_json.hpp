@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "packer/export/json_lines.hpp"
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 #include "runtime/pack_format/chunk_view.hpp"
 
 namespace zonepack::packer {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "packer/commands/command_line.hpp"
-#include "packer/commands/text_table.hpp"
+#include "packer/console/command_line.hpp"
+#include "packer/console/text_table.hpp"
 #include "packer/verify/problem.hpp"
 #include "platform/storage.hpp"
 #include "runtime/pack_format/accounting.hpp"

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "packer/commands/command_line.hpp"
-#include "packer/commands/text_table.hpp"
+#include "packer/console/command_line.hpp"
+#include "packer/console/text_table.hpp"
 #include "packer/verify/problem.hpp"
 #include "runtime/pack_format/pack_reader.hpp"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "packer/outline/map_image.hpp"
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 
 // A floor plan put together from what the robot's sensors saw.
 namespace zonepack::packer {

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 #include "packer/sources/damage.hpp"
 #include "packer/sources/sqlite.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 #include "packer/sources/damage.hpp"
 #include "packer/sources/keyed_rows.hpp"
 #include "packer/sources/rtabmap_schema.hpp"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 #include "packer/sources/damage.hpp"
 #include "packer/sources/map_outline.hpp"
 #include "packer/sources/sqlite.hpp"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 #include "packer/sources/damage.hpp"
 #include "packer/sources/keyed_rows.hpp"
 #include "packer/sources/rtabmap_schema.hpp"

@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 #include "packer/sources/damage.hpp"
 
 namespace zonepack::packer {

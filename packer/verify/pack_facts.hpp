@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 #include "runtime/pack_format/pack_file.hpp"
 
 namespace zonepack::packer {

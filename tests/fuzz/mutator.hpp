@@ -4,7 +4,7 @@
 #include <cstring>
 #include <random>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 
 namespace zonepack::fuzz {
 

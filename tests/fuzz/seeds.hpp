@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 
 namespace zonepack::fuzz {
 

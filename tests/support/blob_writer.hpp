@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 
 // Writers of the blobs that RTAB-Map stores, for databases made by tests.
 namespace zonepack::test_support {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 #include "packer/verify/map_source.hpp"
 
 namespace zonepack::test_support {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 #include "runtime/pack_format/manifest_file.hpp"
 
 namespace zonepack::test_support {

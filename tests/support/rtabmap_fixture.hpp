@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 #include "packer/sources/map_outline.hpp"
 
 // Small RTAB-Map databases made by tests, in the schema of any version from 0.11 to 0.23.

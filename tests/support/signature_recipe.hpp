@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 #include "tests/support/rtabmap_fixture.hpp"
 
 // Signatures made by tests. The same recipe gives the same bits on every machine.

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 
 namespace zonepack::test_support {
 

@@ -2,7 +2,7 @@
 # With CMAKE_UNITY_BUILD sources are compiled in batches: a fresh build takes a fifth of the time. These have names of
 # their own that another file of the same target has too, and are compiled alone.
 set(zonepack_alone
-  packer/commands/command_line.cpp
+  packer/console/command_line.cpp
   packer/commands/export.cpp
   packer/commands/plan.cpp
   packer/commands/prune.cpp

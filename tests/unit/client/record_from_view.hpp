@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "packer/record.hpp"
+#include "packer/record/record.hpp"
 #include "runtime/client/signature_view.hpp"
 
 namespace zonepack::test_support {

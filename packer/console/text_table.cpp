@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "packer/commands/text_table.hpp"
+#include "packer/console/text_table.hpp"
 
 #include <algorithm>
 #include <cstdio>

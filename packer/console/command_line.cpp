@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "packer/commands/command_line.hpp"
+#include "packer/console/command_line.hpp"
 
 #include <cstring>
 #include <iostream>
