@@ -9,7 +9,7 @@
 
 #include "packer/console/command_line.hpp"
 #include "packer/decode/map_reader.hpp"
-#include "packer/plan/map_plan.hpp"
+#include "packer/inspect/map_plan.hpp"
 #include "runtime/report/format.hpp"
 
 namespace zonepack::packer {

@@ -11,7 +11,7 @@
 
 #include "packer/build/map_builder.hpp"
 #include "packer/decode/map_reader.hpp"
-#include "packer/plan/map_plan.hpp"
+#include "packer/inspect/map_plan.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace zonepack::packer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "packer/plan/map_plan.hpp"
+#include "packer/inspect/map_plan.hpp"
 
 #include <algorithm>
 #include <functional>
