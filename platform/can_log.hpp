@@ -13,8 +13,8 @@
 
 #include "platform/base/result.hpp"
 #include "platform/can_bus.hpp"
+#include "platform/can_frame_source.hpp"
 #include "platform/can_log_line.hpp"
-#include "platform/sim/sim_can_bus.hpp"
 
 namespace zonepack {
 

@@ -9,17 +9,9 @@
 #include <vector>
 
 #include "platform/can_bus.hpp"
+#include "platform/can_frame_source.hpp"
 
 namespace zonepack {
-
-// Frames one after the other: a log, a list, a generator.
-class CanFrameSource {
- public:
-  virtual ~CanFrameSource() = default;
-  virtual std::optional<CanFrame> next() noexcept = 0;
-  // Frames known to be missing before the one that next() gave last.
-  virtual std::uint64_t dropped() const noexcept { return 0; }
-};
 
 // From at_ns on.
 struct CanLinkChange {

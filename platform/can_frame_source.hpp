@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "platform/can_bus.hpp"
+
+namespace zonepack {
+
+// Frames one after the other: a log, a list, a generator.
+class CanFrameSource {
+ public:
+  virtual ~CanFrameSource() = default;
+  virtual std::optional<CanFrame> next() noexcept = 0;
+  // Frames known to be missing before the one that next() gave last.
+  virtual std::uint64_t dropped() const noexcept { return 0; }
+};
+
+}  // namespace zonepack
