@@ -8,11 +8,12 @@
 #include <span>
 #include <string>
 
+#include "platform/base/byte_span.hpp"
+
 // The two checksums of the format. XXH3-64 finds accidents and costs next to nothing on every load;
 // BLAKE2b finds intent and names packs by content.
 namespace zonepack {
 
-using ByteSpan = std::span<const std::byte>;
 using Digest16 = std::array<std::uint8_t, 16>;
 using Digest32 = std::array<std::uint8_t, 32>;
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "platform/base/byte_span.hpp"
 #include "platform/base/result.hpp"
-#include "runtime/pack_format/checksum.hpp"
 #include "runtime/pack_format/column.hpp"
 #include "runtime/pack_format/core_chunk_generated.h"
 #include "runtime/pack_format/pack_generated.h"

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <span>
 
+#include "platform/base/byte_span.hpp"
 #include "runtime/pack_format/bulk_chunk_generated.h"
-#include "runtime/pack_format/checksum.hpp"
 #include "runtime/pack_format/limits.hpp"
 
 // Columns of 32-bit values in the smallest form that gives every bit back, each read in O(1) where
