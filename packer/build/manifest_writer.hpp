@@ -7,7 +7,7 @@
 
 #include "packer/encode/pack_writer.hpp"
 #include "packer/zones/zone_plan.hpp"
-#include "runtime/pack_format/manifest_file.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
 
 namespace zonepack::packer {
 

@@ -13,7 +13,7 @@
 #include "packer/zones/partition.hpp"
 #include "packer/zones/split.hpp"
 #include "packer/zones/zone_file.hpp"
-#include "runtime/pack_format/accounting.hpp"
+#include "runtime/pack_format/file/accounting.hpp"
 
 // From a database and a zone file to a map: a folder with one pack per zone and a manifest.
 namespace zonepack::packer {

@@ -8,7 +8,7 @@
 
 #include "platform/atomic_file.hpp"
 #include "platform/storage.hpp"
-#include "runtime/pack_format/manifest_file.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
 
 namespace zonepack::packer {
 

@@ -10,9 +10,9 @@
 
 #include "packer/console/command_line.hpp"
 #include "platform/storage.hpp"
-#include "runtime/pack_format/accounting.hpp"
-#include "runtime/pack_format/checksum.hpp"
-#include "runtime/pack_format/manifest_file.hpp"
+#include "runtime/pack_format/file/accounting.hpp"
+#include "runtime/pack_format/file/checksum.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
 
 namespace zonepack::packer {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "packer/console/command_line.hpp"
 #include "packer/verify/map_verifier.hpp"
-#include "runtime/pack_format/manifest_file.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
 
 namespace zonepack::packer {
 namespace {

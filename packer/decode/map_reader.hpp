@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "runtime/pack_format/manifest_file.hpp"
-#include "runtime/pack_format/pack_reader.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
+#include "runtime/pack_format/file/pack_reader.hpp"
 
 namespace zonepack::packer {
 

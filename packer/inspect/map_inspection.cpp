@@ -8,7 +8,7 @@
 #include "packer/console/text_table.hpp"
 #include "packer/verify/problem.hpp"
 #include "platform/storage.hpp"
-#include "runtime/pack_format/accounting.hpp"
+#include "runtime/pack_format/file/accounting.hpp"
 
 namespace zonepack::packer {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/pack_format/accounting.hpp"
+#include "runtime/pack_format/file/accounting.hpp"
 
 namespace zonepack::packer {
 
@@ -30,7 +30,7 @@ struct BudgetPlan {
   bool whole_map = false;                    // nothing is ever evicted
 };
 
-// What a map costs, by the runtime's own accounting (runtime/pack_format/accounting.hpp):
+// What a map costs, by the runtime's own accounting (runtime/pack_format/file/accounting.hpp):
 //
 //   smallest    = fixed + (pinned + largest pair of neighbours) x (slot + its tables)
 //   live change = smallest + fixed + largest zone x (slot + its tables)

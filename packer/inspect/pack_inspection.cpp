@@ -8,7 +8,7 @@
 #include "packer/console/command_line.hpp"
 #include "packer/console/text_table.hpp"
 #include "packer/verify/problem.hpp"
-#include "runtime/pack_format/pack_reader.hpp"
+#include "runtime/pack_format/file/pack_reader.hpp"
 
 namespace zonepack::packer {
 namespace {

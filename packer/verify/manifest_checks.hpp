@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "packer/verify/pack_facts.hpp"
-#include "runtime/pack_format/manifest_file.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
 
 // Holding a checked manifest against what its packs hold.
 namespace zonepack::packer {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "packer/record/record.hpp"
-#include "runtime/pack_format/pack_file.hpp"
+#include "runtime/pack_format/file/pack_file.hpp"
 
 namespace zonepack::packer {
 

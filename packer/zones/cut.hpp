@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
 
 // Cutting a polygon by straight lines. Metres in the map frame.
 namespace zonepack::packer {

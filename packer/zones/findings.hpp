@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
 
 // What is wrong with a zone file, said so that it can be mended without reading this program.
 namespace zonepack::packer {

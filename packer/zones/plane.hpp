@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
 
 // Plane geometry that only the packer needs. Metres in the map frame.
 namespace zonepack::packer {

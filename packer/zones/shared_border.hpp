@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
 
 // Where two zones meet.
 namespace zonepack::packer {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
 
 // What a user has drawn: the zones of a building and the portals between them. Map frame, metres.
 namespace zonepack::packer {

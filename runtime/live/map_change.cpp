@@ -7,7 +7,7 @@
 #include "platform/realtime.hpp"
 #include "platform/storage.hpp"
 #include "runtime/map/next_version.hpp"
-#include "runtime/pack_format/manifest_file.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
 #include "runtime/run/run_inputs.hpp"
 
 namespace zonepack {

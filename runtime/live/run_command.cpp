@@ -12,7 +12,7 @@
 #include "platform/storage.hpp"
 #include "runtime/live/live_memory.hpp"
 #include "runtime/live/live_run.hpp"
-#include "runtime/pack_format/manifest_file.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
 #include "runtime/run/log_faults.hpp"
 #include "runtime/run/summary_text.hpp"
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "platform/base/result.hpp"
-#include "runtime/pack_format/accounting.hpp"
-#include "runtime/pack_format/checksum.hpp"
-#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/file/accounting.hpp"
+#include "runtime/pack_format/file/checksum.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
 #include "runtime/pack_format/ids.hpp"
 
 namespace zonepack {

@@ -8,7 +8,7 @@
 
 #include "platform/base/result.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/pack_format/pack_reader.hpp"
+#include "runtime/pack_format/file/pack_reader.hpp"
 
 namespace zonepack {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "platform/base/byte_count.hpp"
-#include "runtime/pack_format/accounting.hpp"
+#include "runtime/pack_format/file/accounting.hpp"
 
 namespace zonepack {
 

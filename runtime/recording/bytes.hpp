@@ -8,7 +8,7 @@
 #include <span>
 
 #include "runtime/odometry/pose.hpp"
-#include "runtime/pack_format/checksum.hpp"
+#include "runtime/pack_format/file/checksum.hpp"
 
 // The numbers of recordings and saved states. Fixed ones are little endian; a varint holds seven
 // bits a byte, lowest first, the top bit set on all bytes but the last; signed ones are zigzag

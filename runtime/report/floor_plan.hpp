@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
 #include "runtime/report/svg.hpp"
 
 // A map seen from above: zones, portals, signatures and routes in metres of the map frame, drawn to

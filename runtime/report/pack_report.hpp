@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
-#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
 #include "runtime/report/report.hpp"
 
 // What a packed map holds, for drawing; whoever reads the manifest fills it.

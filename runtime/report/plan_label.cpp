@@ -5,7 +5,7 @@
 #include <iterator>
 #include <limits>
 
-#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
 
 namespace zonepack::report {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
 #include "runtime/report/svg.hpp"
 
 namespace zonepack::report {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "platform/base/require.hpp"
-#include "runtime/pack_format/checksum.hpp"
+#include "runtime/pack_format/file/checksum.hpp"
 
 namespace zonepack {
 namespace {

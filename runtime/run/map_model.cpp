@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "runtime/pack_format/accounting.hpp"
+#include "runtime/pack_format/file/accounting.hpp"
 
 namespace zonepack {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "platform/base/byte_count.hpp"
 #include "runtime/odometry/pose.hpp"
-#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
 #include "runtime/pack_format/ids.hpp"
 
 // What a replay did, for drawing. Times are seconds since the start of the run.

@@ -12,8 +12,8 @@
 #include "platform/base/result.hpp"
 #include "platform/storage.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/pack_format/geometry.hpp"
-#include "runtime/pack_format/manifest_file.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
 
 namespace zonepack {
 

@@ -7,7 +7,7 @@
 
 #include "platform/base/result.hpp"
 #include "runtime/odometry/pose.hpp"
-#include "runtime/pack_format/checksum.hpp"
+#include "runtime/pack_format/file/checksum.hpp"
 
 namespace zonepack {
 

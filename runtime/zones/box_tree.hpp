@@ -9,7 +9,7 @@
 
 #include "platform/base/byte_count.hpp"
 #include "platform/base/require.hpp"
-#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
 
 namespace zonepack {
 

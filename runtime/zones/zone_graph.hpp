@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
-#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
 #include "runtime/pack_format/ids.hpp"
 #include "runtime/zones/box_tree.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "runtime/pack_format/checksum.hpp"
+#include "runtime/pack_format/file/checksum.hpp"
 
 // What readers do with bytes that someone made up. Each entry puts the bytes where checksums cannot
 // protect them (a digest is as easily forged as the rest) and reads all that the checks let

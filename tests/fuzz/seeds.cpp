@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/pack_format/pack_file.hpp"
+#include "runtime/pack_format/file/pack_file.hpp"
 #include "tests/support/small_map.hpp"
 
 namespace zonepack::fuzz {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "runtime/pack_format/checksum.hpp"
+#include "runtime/pack_format/file/checksum.hpp"
 
 namespace zonepack::test_support {
 namespace {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "packer/record/record.hpp"
-#include "runtime/pack_format/manifest_file.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
 
 namespace zonepack::test_support {
 

@@ -6,7 +6,7 @@
 
 #include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/pack_format/accounting.hpp"
+#include "runtime/pack_format/file/accounting.hpp"
 #include "tests/support/building.hpp"
 
 // The sample building as a catalog, without packs, and the settings of the robot that drove in it.

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "platform/base/require.hpp"
-#include "runtime/pack_format/pack_file.hpp"
+#include "runtime/pack_format/file/pack_file.hpp"
 
 namespace zonepack::test_support {
 namespace {

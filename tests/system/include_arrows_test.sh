@@ -13,7 +13,7 @@ forbid "platform must not know what stands on it" platform 'runtime/|packer/|tes
 forbid "the pack format must not know its users" runtime/pack_format 'runtime/(map|memory|zones|odometry|replay|report|settings|localize|serve)/|packer/|runtime/[a-z_]+\.hpp'
 forbid "reports know the pack format only" runtime/report 'runtime/(map|memory|zones|odometry|replay|settings|localize|serve)/|packer/|runtime/[a-z_]+\.hpp'
 forbid "the core must not know replay, settings or pictures" "runtime/map runtime/memory runtime/zones runtime/odometry" 'runtime/(replay|report|settings|serve|localize)/|packer/|runtime/[a-z_]+\.hpp'
-forbid "a client knows loaded zones, their layout and the protocol only" runtime/client 'runtime/(map|zones|odometry|replay|report|settings|live|localize)/|runtime/memory/(arena|residency|shared_map|zone_)|runtime/pack_format/(pack_reader|pack_file|manifest|accounting)|packer/|runtime/[a-z_]+\.hpp|yaml|sodium|lz4'
+forbid "a client knows loaded zones, their layout and the protocol only" runtime/client 'runtime/(map|zones|odometry|replay|report|settings|live|localize)/|runtime/memory/(arena|residency|shared_map|zone_)|runtime/pack_format/file/|packer/|runtime/[a-z_]+\.hpp|yaml|sodium|lz4'
 forbid "the runtime must not know the packer" runtime 'packer/|sqlite3\.h|opencv|nlohmann'
 forbid "packer and runtime share the pack format and the pictures only" packer 'runtime/(map|memory|zones|odometry|replay|settings|localize|serve)/|runtime/[a-z_]+\.hpp'
 forbid "system headers stay in platform/linux" "platform/base platform/sim runtime" 'linux/|sys/(mman|socket|epoll|ioctl)\.h|gpiod'

@@ -15,7 +15,7 @@
 
 #include "runtime/client/client.hpp"
 #include "runtime/map/loader.hpp"
-#include "runtime/pack_format/manifest_file.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
 #include "tests/system/readers/zone_images.hpp"
 
 namespace zonepack {

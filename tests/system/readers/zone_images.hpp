@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "runtime/client/signature_view.hpp"
-#include "runtime/pack_format/pack_reader.hpp"
+#include "runtime/pack_format/file/pack_reader.hpp"
 
 namespace zonepack::test_support {
 

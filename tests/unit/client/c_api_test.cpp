@@ -4,7 +4,7 @@
 #include "packer/decode/record_decoder.hpp"
 #include "packer/encode/pack_writer.hpp"
 #include "platform/shared_memory.hpp"
-#include "runtime/pack_format/pack_reader.hpp"
+#include "runtime/pack_format/file/pack_reader.hpp"
 #include "tests/support/shared_zones.hpp"
 #include "tests/support/signature_recipe.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "packer/encode/pack_writer.hpp"
-#include "runtime/pack_format/pack_reader.hpp"
+#include "runtime/pack_format/file/pack_reader.hpp"
 #include "tests/support/shared_zones.hpp"
 #include "tests/support/signature_recipe.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -11,7 +11,7 @@
 #include "packer/encode/pack_writer.hpp"
 #include "packer/sources/rtabmap_database.hpp"
 #include "platform/shared_memory.hpp"
-#include "runtime/pack_format/pack_reader.hpp"
+#include "runtime/pack_format/file/pack_reader.hpp"
 #include "tests/support/rtabmap_fixture.hpp"
 #include "tests/support/shared_zones.hpp"
 #include "tests/support/signature_recipe.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The checksum with the widest instructions of this processor (AVX2 or AVX-512 chosen at run time,
 // NEON at compile time) against the same algorithm without any.
-#include "runtime/pack_format/checksum.hpp"
+#include "runtime/pack_format/file/checksum.hpp"
 
 #include <gtest/gtest.h>
 

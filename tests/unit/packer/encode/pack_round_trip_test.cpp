@@ -5,7 +5,7 @@
 #include "packer/decode/record_decoder.hpp"
 #include "packer/encode/pack_writer.hpp"
 #include "packer/sources/rtabmap_database.hpp"
-#include "runtime/pack_format/pack_reader.hpp"
+#include "runtime/pack_format/file/pack_reader.hpp"
 #include "tests/support/rtabmap_fixture.hpp"
 #include "tests/support/signature_recipe.hpp"
 #include "tests/support/temporary_folder.hpp"

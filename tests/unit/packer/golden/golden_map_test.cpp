@@ -12,7 +12,7 @@
 #include "packer/verify/map_verifier.hpp"
 #include "platform/storage.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/pack_format/pack_reader.hpp"
+#include "runtime/pack_format/file/pack_reader.hpp"
 #include "tests/support/memory_folder.hpp"
 #include "tests/support/record_text.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -7,8 +7,8 @@
 
 #include "packer/verify/map_verifier.hpp"
 #include "packer/verify/pack_verifier.hpp"
-#include "runtime/pack_format/manifest_file.hpp"
-#include "runtime/pack_format/pack_file.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
+#include "runtime/pack_format/file/pack_file.hpp"
 #include "tests/support/small_map.hpp"
 
 namespace zonepack::packer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/pack_format/pack_reader.hpp"
+#include "runtime/pack_format/file/pack_reader.hpp"
 
 #include <algorithm>
 #include <array>

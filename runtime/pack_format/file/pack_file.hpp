@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "platform/base/result.hpp"
-#include "runtime/pack_format/checksum.hpp"
 #include "runtime/pack_format/chunk_view.hpp"
+#include "runtime/pack_format/file/checksum.hpp"
 #include "runtime/pack_format/pack_generated.h"
 
 // The frame of a pack file: header, chunks, index, tail. FORMAT.md draws it byte by byte.

@@ -8,7 +8,7 @@
 
 #include "platform/base/result.hpp"
 #include "platform/storage.hpp"
-#include "runtime/pack_format/pack_file.hpp"
+#include "runtime/pack_format/file/pack_file.hpp"
 #include "runtime/pack_format/zone_view.hpp"
 
 namespace zonepack {

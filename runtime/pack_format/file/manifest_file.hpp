@@ -6,13 +6,13 @@
 
 #include "platform/base/byte_count.hpp"
 #include "platform/base/result.hpp"
-#include "runtime/pack_format/checksum.hpp"
 #include "runtime/pack_format/chunk_view.hpp"
-#include "runtime/pack_format/geometry.hpp"
+#include "runtime/pack_format/file/checksum.hpp"
+#include "runtime/pack_format/file/geometry.hpp"
+#include "runtime/pack_format/file/pack_file.hpp"
 #include "runtime/pack_format/ids.hpp"
 #include "runtime/pack_format/limits.hpp"
 #include "runtime/pack_format/manifest_generated.h"
-#include "runtime/pack_format/pack_file.hpp"
 
 // The frame of the manifest: header, one FlatBuffer, tail with the digest of all before it.
 namespace zonepack {

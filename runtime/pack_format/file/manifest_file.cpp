@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/pack_format/manifest_file.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
 
 #include <bit>
 #include <cmath>
 #include <cstring>
 
+#include "runtime/pack_format/file/pack_file.hpp"
 #include "runtime/pack_format/limits.hpp"
-#include "runtime/pack_format/pack_file.hpp"
 #include "runtime/pack_format/struct_alignment.hpp"
 
 namespace zonepack {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/pack_format/accounting.hpp"
+#include "runtime/pack_format/file/accounting.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/pack_format/pack_file.hpp"
+#include "runtime/pack_format/file/pack_file.hpp"
 
 #include <lz4.h>
 

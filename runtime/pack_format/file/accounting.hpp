@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
 #include "runtime/pack_format/ids.hpp"
 #include "runtime/pack_format/limits.hpp"
-#include "runtime/pack_format/manifest_file.hpp"
 
 // What a map costs in memory, counted the same way by the packer's plan and by the robot, so that a
 // budget which plan promises is a budget which the robot keeps.

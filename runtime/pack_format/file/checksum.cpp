@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/pack_format/checksum.hpp"
+#include "runtime/pack_format/file/checksum.hpp"
 
 #include <sodium/crypto_generichash_blake2b.h>
 #include <xxhash.h>
