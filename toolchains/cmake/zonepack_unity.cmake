@@ -25,24 +25,24 @@ set(zonepack_alone
   runtime/settings/settings_reference.cpp
   runtime/settings/yaml_section.cpp
   runtime/zones/tracker.cpp
-  tests/unit/memory/residency_test.cpp
-  tests/unit/odometry/canopen_watch_test.cpp
-  tests/unit/odometry/pose_filter_test.cpp
-  tests/unit/odometry/wheel_odometry_test.cpp
-  tests/unit/pack_format/checksum_test.cpp
+  tests/unit/runtime/memory/residency_test.cpp
+  tests/unit/runtime/odometry/canopen_watch_test.cpp
+  tests/unit/runtime/odometry/pose_filter_test.cpp
+  tests/unit/runtime/odometry/wheel_odometry_test.cpp
+  tests/unit/runtime/pack_format/file/checksum_test.cpp
   tests/unit/packer/sources/rtabmap_blobs_test.cpp
   tests/unit/packer/sources/zlib_blob_test.cpp
   tests/unit/packer/zones/split_test.cpp
   tests/unit/packer/verify/lying_manifest_test.cpp
   tests/unit/platform/shared_memory_test.cpp
   tests/unit/platform/sim/sim_wire_test.cpp
-  tests/unit/report/floor_plan_test.cpp
-  tests/unit/report/svg_test.cpp
-  tests/unit/report/ticks_test.cpp
+  tests/unit/runtime/report/floor_plan_test.cpp
+  tests/unit/runtime/report/svg_test.cpp
+  tests/unit/runtime/report/ticks_test.cpp
   tests/unit/runtime/live/control_loop_test.cpp
   tests/unit/runtime/recording/flight_recorder_test.cpp
   tests/unit/runtime/recording/recorded_run_test.cpp
-  tests/unit/runtime/replay/run_report_test.cpp
+  tests/unit/runtime/run/run_report_test.cpp
   tests/unit/runtime/settings/profiles_test.cpp)
 
 function(zonepack_compile_alone)

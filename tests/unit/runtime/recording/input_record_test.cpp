@@ -8,7 +8,7 @@
 
 #include "runtime/recording/byte_ring.hpp"
 #include "runtime/recording/cycle_block.hpp"
-#include "tests/unit/runtime/allocation_count.hpp"
+#include "tests/unit/runtime/control/allocation_count.hpp"
 
 namespace zonepack {
 namespace {

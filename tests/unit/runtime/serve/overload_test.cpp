@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "tests/unit/serve/fake_run.hpp"
+#include "tests/unit/runtime/serve/fake_run.hpp"
 
 namespace zonepack {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "platform/sim/sim_storage.hpp"
 #include "tests/support/page_cache.hpp"
-#include "tests/unit/packer/load/two_zones.hpp"
+#include "tests/unit/runtime/map/two_zones.hpp"
 
 namespace zonepack {
 namespace {

@@ -8,8 +8,8 @@
 #include "tests/support/shared_zones.hpp"
 #include "tests/support/signature_recipe.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/unit/client/c_reader.h"
-#include "tests/unit/client/fake_zoned.hpp"
+#include "tests/unit/runtime/client/c_reader.h"
+#include "tests/unit/runtime/client/fake_zoned.hpp"
 
 namespace zonepack {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runtime/odometry/pose_filter.hpp"
-#include "tests/unit/odometry/drive.hpp"
+#include "tests/unit/runtime/odometry/drive.hpp"
 
 namespace zonepack {
 namespace {

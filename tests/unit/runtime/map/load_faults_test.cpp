@@ -12,7 +12,7 @@
 
 #include "platform/sim/sim_storage.hpp"
 #include "runtime/map/load_fault.hpp"
-#include "tests/unit/packer/load/two_zones.hpp"
+#include "tests/unit/runtime/map/two_zones.hpp"
 
 namespace zonepack {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/unit/odometry/drive.hpp"
+#include "tests/unit/runtime/odometry/drive.hpp"
 
 namespace zonepack {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/unit/client/record_from_view.hpp"
+#include "tests/unit/runtime/client/record_from_view.hpp"
 
 #include <cstring>
 

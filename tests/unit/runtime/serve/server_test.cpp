@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/unit/serve/fake_run.hpp"
+#include "tests/unit/runtime/serve/fake_run.hpp"
 
 namespace zonepack {
 namespace {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "tests/unit/client/c_reader.h"
+#include "tests/unit/runtime/client/c_reader.h"
 
 #include <string.h>
 

@@ -11,7 +11,7 @@
 #include "runtime/ctl/commands/figures.hpp"
 #include "runtime/ctl/commands/watch_view.hpp"
 #include "runtime/serve/answers.hpp"
-#include "tests/unit/serve/fake_run.hpp"
+#include "tests/unit/runtime/serve/fake_run.hpp"
 
 namespace zonepack {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "tests/unit/packer/load/two_zones.hpp"
+#include "tests/unit/runtime/map/two_zones.hpp"
 
 namespace zonepack {
 namespace {

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "runtime/odometry/pose_filter.hpp"
-#include "tests/unit/odometry/drive.hpp"
+#include "tests/unit/runtime/odometry/drive.hpp"
 
 namespace {
 bool counting = false;

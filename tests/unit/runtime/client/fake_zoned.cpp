@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/unit/client/fake_zoned.hpp"
+#include "tests/unit/runtime/client/fake_zoned.hpp"
 
 #include <array>
 #include <chrono>

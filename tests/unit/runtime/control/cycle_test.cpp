@@ -13,7 +13,7 @@
 #include "runtime/run/modelled_loader.hpp"
 #include "tests/support/rooms.hpp"
 #include "tests/support/sample_catalog.hpp"
-#include "tests/unit/runtime/allocation_count.hpp"
+#include "tests/unit/runtime/control/allocation_count.hpp"
 
 namespace zonepack {
 namespace {

@@ -16,7 +16,7 @@
 #include "tests/support/shared_zones.hpp"
 #include "tests/support/signature_recipe.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/unit/client/record_from_view.hpp"
+#include "tests/unit/runtime/client/record_from_view.hpp"
 
 namespace zonepack {
 namespace {
