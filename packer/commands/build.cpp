@@ -13,7 +13,7 @@
 namespace zonepack::packer {
 namespace {
 
-struct Arguments {
+struct BuildArguments {
   BuildOptions options;
   JsonOutput json;
 };
@@ -104,7 +104,7 @@ void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostr
   }
 }
 
-void run(const Arguments& arguments, std::ostream& text) {
+void run_build(const BuildArguments& arguments, std::ostream& text) {
   const BuildOptions& options = arguments.options;
   Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
   const BuildSummary s = build_map(options, progress);
@@ -123,7 +123,7 @@ void run(const Arguments& arguments, std::ostream& text) {
 }  // namespace
 
 void add_build_command(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<BuildArguments>();
   BuildOptions& options = arguments->options;
   CLI::App* const command =
       app.add_subcommand("build", "Pack a SLAM map database into one pack per zone and a manifest");
@@ -165,7 +165,7 @@ void add_build_command(CLI::App& app, int& exit_code) {
       ->type_name("N");
   arguments->json.add_option(*command);
   command->callback([arguments, &exit_code] {
-    run(*arguments, arguments->json.text());
+    run_build(*arguments, arguments->json.text());
     exit_code = 0;
   });
 }

@@ -39,7 +39,7 @@ constexpr char kLineFormat[] =
     "float32\n"
     "as the double of the same value; NaN and infinities are \"nan\", \"inf\", \"-inf\".";
 
-struct Arguments {
+struct ExportArguments {
   std::string folder;
   std::vector<std::string> zones;
   std::string out;
@@ -69,7 +69,7 @@ void write_to_standard_output(std::string_view piece) {
   }
 }
 
-void run(const Arguments& arguments) {
+void run_export(const ExportArguments& arguments) {
   const MapReader map(arguments.folder);
   const std::vector<ZoneId> zones = chosen_zones(map, arguments.zones);
   const auto require = [&](const Result<void>& written) {
@@ -95,7 +95,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_export_command(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ExportArguments>();
   CLI::App* const command = app.add_subcommand(
       "export", "Write every signature of a map as JSON, for comparison with the database");
   command->footer(kLineFormat);
@@ -108,7 +108,7 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", arguments->out, "file to write; default standard output")
       ->type_name("FILE");
   command->callback([arguments, &exit_code] {
-    run(*arguments);
+    run_export(*arguments);
     exit_code = 0;
   });
 }

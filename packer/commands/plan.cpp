@@ -24,7 +24,7 @@ constexpr char kFormulas[] =
     "loaded beside the pair of the old one; the new map is taken to be as large as this one.\n"
     "Exit code 1 when --budget is below the smallest.";
 
-struct Arguments {
+struct PlanArguments {
   std::string folder;
   ByteCount budget = 0;
   PayloadMask payload = kDefaultPayload;
@@ -49,7 +49,7 @@ nlohmann::ordered_json names(const MapPlan& plan, const std::vector<ZoneId>& zon
   return list;
 }
 
-nlohmann::ordered_json to_json(const MapPlan& plan, const Arguments& arguments) {
+nlohmann::ordered_json to_json(const MapPlan& plan, const PlanArguments& arguments) {
   nlohmann::ordered_json json;
   json["map"] = arguments.folder;
   json["payload"] = payload_text(plan.payload);
@@ -141,7 +141,7 @@ void print(const MapPlan& plan, std::ostream& out) {
 }  // namespace
 
 void add_plan_command(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<PlanArguments>();
   CLI::App* const command =
       app.add_subcommand("plan", "Tell what a map costs in memory, and what a budget allows");
   command->footer(kFormulas);

@@ -10,13 +10,13 @@
 namespace zonepack::packer {
 namespace {
 
-struct Arguments {
+struct PruneArguments {
   std::string folder;
   bool dry_run = false;
   JsonOutput json;
 };
 
-void run(const Arguments& arguments) {
+void run_prune(const PruneArguments& arguments) {
   const std::vector<Leftover> leftovers = find_leftovers(arguments.folder);
   std::ostream& out = arguments.json.text();
   ByteCount bytes = 0;
@@ -42,14 +42,14 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_prune_command(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<PruneArguments>();
   CLI::App* const command = app.add_subcommand(
       "prune", "Remove packs that the manifest does not name and parts that killed builds left");
   command->add_option("DIR", arguments->folder, "folder of the map")->required();
   command->add_flag("--dry-run", arguments->dry_run, "list them, remove nothing");
   arguments->json.add_option(*command);
   command->callback([arguments, &exit_code] {
-    run(*arguments);
+    run_prune(*arguments);
     exit_code = 0;
   });
 }

@@ -17,7 +17,7 @@
 namespace zonepack::packer {
 namespace {
 
-std::string text_of(const flatbuffers::String* text) {
+std::string text_or_empty(const flatbuffers::String* text) {
   return text == nullptr ? std::string() : text->str();
 }
 
@@ -41,8 +41,8 @@ std::string payload_names(PayloadMask payload) {
 
 report::PackedZone zone_of(const fb::Zone& zone, std::uint32_t slots, PayloadMask payload) {
   report::PackedZone out{.name = zone.name()->str(),
-                         .zone_type = text_of(zone.zone_type()),
-                         .label = text_of(zone.label()),
+                         .zone_type = text_or_empty(zone.zone_type()),
+                         .label = text_or_empty(zone.label()),
                          .polygon = polygon_of(zone),
                          .signatures = zone.signatures(),
                          .features = zone.features(),
@@ -68,9 +68,9 @@ std::string pair_text(const fb::Manifest& manifest, const LargestPair& pair) {
 }
 
 std::string source_text(const fb::Provenance& source) {
-  std::string text = "Packed from " + text_of(source.source_kind());
-  const std::string version = text_of(source.source_version());
-  const std::string packer = text_of(source.packer_version());
+  std::string text = "Packed from " + text_or_empty(source.source_kind());
+  const std::string version = text_or_empty(source.source_version());
+  const std::string packer = text_or_empty(source.packer_version());
   if (!version.empty()) text += " " + version;
   if (!packer.empty()) text += " by zonepack " + packer;
   return text + ".";

@@ -11,7 +11,7 @@
 namespace zonepack::packer {
 namespace {
 
-struct Arguments {
+struct VerifyArguments {
   std::string path;
   JsonOutput json;
 };
@@ -61,7 +61,7 @@ void print(const Verdict& verdict, const std::string& path, std::ostream& out) {
 }  // namespace
 
 void add_verify_command(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* const command = app.add_subcommand(
       "verify",
       "Check every byte of a map or a pack: 0 whole, 1 damaged, with each place and what to do");

@@ -18,7 +18,7 @@ PayloadMask parse_payload(const std::string& text) {
     bool known = false;
     for (std::uint32_t k = 1; k < kPayloadKinds; ++k) {
       const auto kind = static_cast<fb::PayloadKind>(k);
-      if (word != to_string(kind)) continue;
+      if (word != zonepack::to_string(kind)) continue;
       mask |= mask_of(kind);
       known = true;
     }
@@ -66,7 +66,7 @@ std::string payload_text(PayloadMask mask) {
     const auto kind = static_cast<fb::PayloadKind>(k);
     if ((mask & mask_of(kind)) == 0) continue;
     if (!text.empty()) text += ',';
-    text += to_string(kind);
+    text += zonepack::to_string(kind);
   }
   return text;
 }

@@ -15,7 +15,7 @@ namespace zonepack::packer {
 namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
-constexpr std::uint64_t kFrameBytes = 160;
+constexpr std::uint64_t kCoreFrameBytes = 160;
 constexpr std::uint64_t kTableBytes = 288;  // a Signature with every field, its vtable and padding
 constexpr std::size_t kLinksPerRecord = 32;
 constexpr std::size_t kMaxBlobBytes = 4096;
@@ -118,7 +118,7 @@ std::vector<CoreRecord> core_records(SignatureRecord& record, std::uint32_t ordi
 }
 
 std::size_t core_run(std::span<const CoreRecord> records, std::uint64_t capacity) {
-  std::uint64_t size = kFrameBytes;
+  std::uint64_t size = kCoreFrameBytes;
   std::size_t count = 0;
   // Distinct matrices and calibrations are stored once, so the bounds are taken with them shared.
   Interned informations;

@@ -16,7 +16,7 @@ constexpr int kHit = 847, kMiss = -405, kLeast = -1992, kMost = 3476;
 constexpr double kReach_m = 100;
 constexpr double kMargin_m = 0.5;
 constexpr std::int64_t kMaxCells = std::int64_t{1} << 29;
-constexpr std::int32_t kFloat32 = 5;  // OpenCV's depth
+constexpr std::int32_t kMatrixFloat32 = 5;  // OpenCV's depth
 
 std::int64_t floor_div(std::int64_t a, std::int64_t b) { return (a >= 0 ? a : a - b + 1) / b; }
 
@@ -24,7 +24,7 @@ std::int64_t floor_div(std::int64_t a, std::int64_t b) { return (a >= 0 ? a : a 
 template <typename Fn>
 void for_each_cell(const Matrix& cells, Fn&& fn) {
   const auto channels = static_cast<std::size_t>((cells.type >> 3) + 1);
-  if ((cells.type & 7) != kFloat32 || channels < 2) return;
+  if ((cells.type & 7) != kMatrixFloat32 || channels < 2) return;
   const std::size_t stride = channels * sizeof(float);
   for (std::size_t at = 0; at + stride <= cells.data.size(); at += stride) {
     std::array<float, 3> p{};

@@ -10,7 +10,7 @@
 namespace zonepack::packer {
 namespace {
 
-enum Column {
+enum FeatureColumn {
   kWordId,
   kPosX,
   kPosY,

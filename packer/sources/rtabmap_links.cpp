@@ -11,7 +11,15 @@
 namespace zonepack::packer {
 namespace {
 
-enum LinkColumn { kTo, kType, kTransform, kUserData, kInformation, kRotVariance, kTransVariance };
+enum LinkColumn {
+  kToId,
+  kLinkType,
+  kLinkTransform,
+  kLinkUserData,
+  kLinkInformation,
+  kRotVariance,
+  kTransVariance
+};
 
 std::optional<Matrix> optional_matrix(const SqliteQuery& row, int column, const Place& place,
                                       MatrixUnpacker& unpacker) {
@@ -37,11 +45,11 @@ void LinkReader::read(const Place& place, MatrixUnpacker& unpacker, std::vector<
   const SqliteQuery& row = rows_.row();
   while (rows_.next()) {
     Link link;
-    link.to = int32_cell(row, kTo, place.at("Link.to_id"));
-    link.type = int32_cell(row, kType, place.at("Link.type"));
-    link.transform = transform_cell(row, kTransform, place.at("Link.transform"));
+    link.to = int32_cell(row, kToId, place.at("Link.to_id"));
+    link.type = int32_cell(row, kLinkType, place.at("Link.type"));
+    link.transform = transform_cell(row, kLinkTransform, place.at("Link.transform"));
     read_information(place, link);
-    link.user_data = optional_matrix(row, kUserData, place.at("Link.user_data"), unpacker);
+    link.user_data = optional_matrix(row, kLinkUserData, place.at("Link.user_data"), unpacker);
     out.push_back(std::move(link));
   }
   std::stable_sort(out.begin(), out.end(), [](const Link& a, const Link& b) {
@@ -53,7 +61,7 @@ void LinkReader::read(const Place& place, MatrixUnpacker& unpacker, std::vector<
 void LinkReader::read_information(const Place& place, Link& link) const {
   const SqliteQuery& row = rows_.row();
   const Place matrix = place.at("Link.information_matrix");
-  const auto bytes = blob_cell(row, kInformation, matrix);
+  const auto bytes = blob_cell(row, kLinkInformation, matrix);
   expect_elements(bytes, 36, sizeof(double), "float64", matrix);
   if (!bytes.empty()) {
     link.information.resize(36);

@@ -7,12 +7,9 @@
 #include <cerrno>
 #include <utility>
 
+#include "platform/linux/last_error.hpp"
+
 namespace zonepack {
-namespace {
-
-Error last_error() noexcept { return {ErrorCode::kIo, errno}; }
-
-}  // namespace
 
 Result<AppendFile> AppendFile::create(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOCTTY, 0666);

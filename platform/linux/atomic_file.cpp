@@ -11,14 +11,14 @@
 #include <system_error>
 #include <utility>
 
+#include "platform/linux/last_error.hpp"
+
 namespace zonepack {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPartMark = ".part-";
-
-Error last_error() noexcept { return {ErrorCode::kIo, errno}; }
 
 std::string part_name(const std::string& path) {
   static std::atomic<unsigned> counter{0};

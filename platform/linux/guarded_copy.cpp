@@ -23,7 +23,7 @@ struct Guard {
 // initial-exec: reading it in a handler must not allocate, even in a shared library.
 [[gnu::tls_model("initial-exec")]] thread_local Guard* volatile running = nullptr;
 
-struct sigaction before;
+struct sigaction former_action;
 
 void on_bus_error(int signal, siginfo_t* info, void* context) {
   const bool sent = info->si_code <= 0;  // by kill(), not by a fault
@@ -32,11 +32,12 @@ void on_bus_error(int signal, siginfo_t* info, void* context) {
       !sent && guard != nullptr && guard->begin <= at && at < guard->end) {
     siglongjmp(guard->back, 1);
   }
-  if ((before.sa_flags & SA_SIGINFO) != 0) return before.sa_sigaction(signal, info, context);
-  if (before.sa_handler != SIG_DFL && before.sa_handler != SIG_IGN) {
-    return before.sa_handler(signal);
+  if ((former_action.sa_flags & SA_SIGINFO) != 0)
+    return former_action.sa_sigaction(signal, info, context);
+  if (former_action.sa_handler != SIG_DFL && former_action.sa_handler != SIG_IGN) {
+    return former_action.sa_handler(signal);
   }
-  if (sent && before.sa_handler == SIG_IGN) return;
+  if (sent && former_action.sa_handler == SIG_IGN) return;
   struct sigaction standard = {};
   standard.sa_handler = SIG_DFL;
   ::sigaction(SIGBUS, &standard, nullptr);
@@ -49,7 +50,7 @@ bool install() {
   // NODEFER: what was sent can be raised again in the handler.
   ours.sa_flags = SA_SIGINFO | SA_NODEFER | SA_ONSTACK;
   sigemptyset(&ours.sa_mask);
-  return ::sigaction(SIGBUS, &ours, &before) == 0;
+  return ::sigaction(SIGBUS, &ours, &former_action) == 0;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "platform/base/require.hpp"
+#include "platform/linux/last_error.hpp"
 #include "platform/linux/populate.hpp"
 
 #ifndef MFD_NOEXEC_SEAL
@@ -21,8 +22,6 @@ namespace zonepack {
 namespace {
 
 constexpr int kSizeSeals = F_SEAL_SHRINK | F_SEAL_GROW;
-
-Error last_error() { return {ErrorCode::kIo, errno}; }
 
 int make_memfd(const char* name) {
   constexpr unsigned kFlags = MFD_CLOEXEC | MFD_ALLOW_SEALING;

@@ -9,7 +9,7 @@
 namespace zonepack {
 namespace {
 
-using Kind = SimFault::Kind;
+using Fault = SimFault::Kind;
 
 constexpr std::uint32_t kErrorFrameBits = 31;  // with the pause behind it, at most
 
@@ -45,11 +45,11 @@ SimWire::SimWire(SimWireSettings settings, std::vector<CanFrameSource*> nodes)
   std::vector<Told> told;
   for (const SimFault& fault : settings_.faults) {
     const std::int64_t at_ns = first_ns_ + fault.at_ns;
-    if (fault.kind == Kind::kBusOff) {
+    if (fault.kind == Fault::kBusOff) {
       told.push_back({at_ns, error_frame(kCanErrorBusOff)});
       told.push_back({at_ns + fault.for_ns, error_frame(kCanErrorRestarted)});
     }
-    if (fault.kind == Kind::kPassive) {
+    if (fault.kind == Fault::kPassive) {
       told.push_back({at_ns, error_frame(kCanErrorController, kCanControllerPassive)});
       told.push_back(
           {at_ns + fault.for_ns, error_frame(kCanErrorController, kCanControllerActive)});
@@ -63,9 +63,9 @@ SimWire::SimWire(SimWireSettings settings, std::vector<CanFrameSource*> nodes)
 std::vector<CanLinkChange> SimWire::links() const {
   std::vector<CanLinkChange> changes;
   for (const SimFault& fault : settings_.faults) {
-    if (fault.kind != Kind::kDown && fault.kind != Kind::kAbsent) continue;
+    if (fault.kind != Fault::kDown && fault.kind != Fault::kAbsent) continue;
     const std::int64_t at_ns = first_ns_ + fault.at_ns;
-    changes.push_back({at_ns, fault.kind == Kind::kDown ? CanLink::kDown : CanLink::kAbsent});
+    changes.push_back({at_ns, fault.kind == Fault::kDown ? CanLink::kDown : CanLink::kAbsent});
     changes.push_back({at_ns + fault.for_ns, CanLink::kUp});
   }
   std::stable_sort(changes.begin(), changes.end(),
@@ -82,7 +82,7 @@ std::int64_t SimWire::duration_ns(const CanFrame& frame) const noexcept {
                                    bits.data * 1'000'000'000ull / data_rate);
 }
 
-const SimFault* SimWire::active(Kind kind, std::int64_t now_ns) const noexcept {
+const SimFault* SimWire::active(Fault kind, std::int64_t now_ns) const noexcept {
   for (const SimFault& fault : settings_.faults) {
     const std::int64_t since_ns = now_ns - first_ns_ - fault.at_ns;
     if (since_ns < 0) break;
@@ -92,18 +92,19 @@ const SimFault* SimWire::active(Kind kind, std::int64_t now_ns) const noexcept {
 }
 
 bool SimWire::is_lost(std::int64_t sent_ns) noexcept {
-  if (active(Kind::kBusOff, sent_ns) != nullptr || active(Kind::kDrop, sent_ns) != nullptr) {
+  if (active(Fault::kBusOff, sent_ns) != nullptr || active(Fault::kDrop, sent_ns) != nullptr) {
     return true;
   }
-  if (active(Kind::kOverflow, sent_ns) != nullptr) {
+  if (active(Fault::kOverflow, sent_ns) != nullptr) {
     ++overflowed_;
     return true;
   }
   for (SimFault& fault : settings_.faults) {
     if (sent_ns - first_ns_ < fault.at_ns) break;
-    if (fault.count == 0 || (fault.kind != Kind::kDrop && fault.kind != Kind::kOverflow)) continue;
+    if (fault.count == 0 || (fault.kind != Fault::kDrop && fault.kind != Fault::kOverflow))
+      continue;
     --fault.count;
-    overflowed_ += fault.kind == Kind::kOverflow;
+    overflowed_ += fault.kind == Fault::kOverflow;
     return true;
   }
   return false;
@@ -139,7 +140,7 @@ std::optional<CanFrame> SimWire::next() noexcept {
     }
     waited_ += start_ns > ready_ns;
     std::int64_t took_ns = duration_ns(frame);
-    if (active(Kind::kNoise, start_ns) != nullptr && settings_.bit_rate > 0) {
+    if (active(Fault::kNoise, start_ns) != nullptr && settings_.bit_rate > 0) {
       took_ns += took_ns +
                  static_cast<std::int64_t>(kErrorFrameBits * 1'000'000'000ull / settings_.bit_rate);
     }
@@ -147,7 +148,7 @@ std::optional<CanFrame> SimWire::next() noexcept {
     free_ns_ = std::max(free_ns_, frame.stamp_ns);
     sender->ready = sender->source->next();
     if (is_lost(start_ns)) continue;
-    if (const SimFault* const delay = active(Kind::kDelay, frame.stamp_ns)) {
+    if (const SimFault* const delay = active(Fault::kDelay, frame.stamp_ns)) {
       frame.stamp_ns = first_ns_ + delay->at_ns + delay->for_ns;
     }
     return frame;

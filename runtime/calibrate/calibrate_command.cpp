@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kDegree = 180 / kPi;
 
-int fail(const std::string& message) {
+int fail_calibrate(const std::string& message) {
   std::cerr << "zoned calibrate: " << message << '\n';
   return 1;
 }
 
-std::string fixed(double value, int decimals) {
+std::string decimals_text(double value, int decimals) {
   std::array<char, 64> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
                                  std::chars_format::fixed, decimals)
@@ -39,8 +39,8 @@ std::string padded(std::string text, std::size_t width) {
 std::string row(const char* name, double before, double after, int decimals, const char* unit) {
   std::string text = "  " + std::string(name);
   text.resize(22, ' ');
-  return text + padded(fixed(before, decimals), 10) + padded(fixed(after, decimals), 12) + " " +
-         unit + "\n";
+  return text + padded(decimals_text(before, decimals), 10) +
+         padded(decimals_text(after, decimals), 12) + " " + unit + "\n";
 }
 
 std::string table(const Calibration& c) {
@@ -54,28 +54,29 @@ std::string table(const Calibration& c) {
 }
 
 std::string key(const char* name, double value, double sigma) {
-  return "  " + std::string(name) + ": " + fixed(value, 6) + "  # +- " + fixed(sigma, 6) + "\n";
+  return "  " + std::string(name) + ": " + decimals_text(value, 6) + "  # +- " +
+         decimals_text(sigma, 6) + "\n";
 }
 
 std::string json_of(const char* name, const CalibrationErrors& errors) {
-  return "  \"" + std::string(name) + "\": {\"end_m\": " + fixed(errors.end_m, 6) +
-         ", \"rmse_m\": " + fixed(errors.rmse_m, 6) +
-         ", \"drift_percent\": " + fixed(errors.drift_percent, 6) +
-         ", \"heading_rad\": " + fixed(errors.heading_rad, 6) + "}";
+  return "  \"" + std::string(name) + "\": {\"end_m\": " + decimals_text(errors.end_m, 6) +
+         ", \"rmse_m\": " + decimals_text(errors.rmse_m, 6) +
+         ", \"drift_percent\": " + decimals_text(errors.drift_percent, 6) +
+         ", \"heading_rad\": " + decimals_text(errors.heading_rad, 6) + "}";
 }
 
 std::string json_of(const Calibration& c) {
-  return "{\n  \"distance_m\": " + fixed(c.distance_m, 3) +
-         ",\n  \"turned_rad\": " + fixed(c.turned_rad, 3) +
-         ",\n  \"seconds\": " + fixed(c.seconds, 3) +
+  return "{\n  \"distance_m\": " + decimals_text(c.distance_m, 3) +
+         ",\n  \"turned_rad\": " + decimals_text(c.turned_rad, 3) +
+         ",\n  \"seconds\": " + decimals_text(c.seconds, 3) +
          ",\n  \"windows\": " + std::to_string(c.windows) +
-         ",\n  \"left\": " + fixed(c.fitted.left, 9) +
-         ",\n  \"right\": " + fixed(c.fitted.right, 9) +
-         ",\n  \"track_m\": " + fixed(c.fitted.track_m, 9) +
-         ",\n  \"scale_sigma\": " + fixed(c.scale_sigma, 9) +
-         ",\n  \"track_sigma_m\": " + fixed(c.track_sigma_m, 9) +
-         ",\n  \"difference\": " + fixed(c.difference, 9) +
-         ",\n  \"difference_sigma\": " + fixed(c.difference_sigma, 9) +
+         ",\n  \"left\": " + decimals_text(c.fitted.left, 9) +
+         ",\n  \"right\": " + decimals_text(c.fitted.right, 9) +
+         ",\n  \"track_m\": " + decimals_text(c.fitted.track_m, 9) +
+         ",\n  \"scale_sigma\": " + decimals_text(c.scale_sigma, 9) +
+         ",\n  \"track_sigma_m\": " + decimals_text(c.track_sigma_m, 9) +
+         ",\n  \"difference\": " + decimals_text(c.difference, 9) +
+         ",\n  \"difference_sigma\": " + decimals_text(c.difference_sigma, 9) +
          ",\n  \"sides_differ\": " + (c.sides_differ ? "true" : "false") + ",\n" +
          json_of("before", c.before) + ",\n" + json_of("after", c.after) + "\n}\n";
 }
@@ -143,30 +144,31 @@ int run_calibrate(const CalibrateArguments& arguments) {
   if (!loaded.ok()) {
     std::string all = "settings cannot be used";
     for (const std::string& fault : loaded.faults) all += "\n  " + fault;
-    return fail(all);
+    return fail_calibrate(all);
   }
   const OdometrySettings& odometry = loaded.settings.odometry;
   if (!has_sides(odometry.wheels.model)) {
-    return fail(arguments.config +
-                ": odometry.model: wheel scale and track are those of differential-positions and "
-                "wheel-speeds; other models are measured by hand");
+    return fail_calibrate(
+        arguments.config +
+        ": odometry.model: wheel scale and track are those of differential-positions and "
+        "wheel-speeds; other models are measured by hand");
   }
   std::string fault;
   const auto truth = read_truth(arguments.truth, fault);
-  if (!truth) return fail(fault);
+  if (!truth) return fail_calibrate(fault);
   const auto steps = read_wheel_steps(loaded.settings, arguments.can, fault);
-  if (!steps) return fail(fault);
+  if (!steps) return fail_calibrate(fault);
   const auto result = calibrate(*steps, *truth, odometry.wheels, fault);
-  if (!result) return fail(arguments.can + " with " + arguments.truth + ": " + fault);
+  if (!result) return fail_calibrate(arguments.can + " with " + arguments.truth + ": " + fault);
 
   const bool json_on_output = arguments.json == "-";
   (json_on_output ? std::cerr : std::cout)
-      << arguments.can << ": " << fixed(result->distance_m, 1) << " m, "
-      << fixed(result->turned_rad, 1) << " rad of turning, " << fixed(result->seconds, 1)
-      << " s in " << result->windows << " windows\n\n"
+      << arguments.can << ": " << decimals_text(result->distance_m, 1) << " m, "
+      << decimals_text(result->turned_rad, 1) << " rad of turning, "
+      << decimals_text(result->seconds, 1) << " s in " << result->windows << " windows\n\n"
       << table(*result) << '\n'
-      << "left and right wheel: " << fixed(result->difference * 100, 3) << " +- "
-      << fixed(result->difference_sigma * 100, 3) << " % apart, "
+      << "left and right wheel: " << decimals_text(result->difference * 100, 3) << " +- "
+      << decimals_text(result->difference_sigma * 100, 3) << " % apart, "
       << (result->sides_differ ? "over 3 sigma: told apart"
                                : "less than 3 sigma: taken to be alike")
       << "\n\nPaste over the same keys of " << arguments.config << ":\n\n"
@@ -177,7 +179,8 @@ int run_calibrate(const CalibrateArguments& arguments) {
     return 0;
   }
   if (const auto written = write_file_atomically(arguments.json, json_of(*result)); !written) {
-    return fail(arguments.json + ": cannot be written: " + to_string(written.error().code));
+    return fail_calibrate(arguments.json +
+                          ": cannot be written: " + to_string(written.error().code));
   }
   return 0;
 }

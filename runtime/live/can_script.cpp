@@ -19,13 +19,13 @@
 namespace zonepack {
 namespace {
 
-using Kind = SimFault::Kind;
+using ActKind = SimFault::Kind;
 
-constexpr std::size_t kLargestFile = 1 << 20;
-constexpr std::pair<const char*, Kind> kKinds[] = {
-    {"bus_off", Kind::kBusOff},    {"passive", Kind::kPassive}, {"drop", Kind::kDrop},
-    {"overflow", Kind::kOverflow}, {"delay", Kind::kDelay},     {"noise", Kind::kNoise},
-    {"down", Kind::kDown},         {"absent", Kind::kAbsent}};
+constexpr std::size_t kLargestScript = 1 << 20;
+constexpr std::pair<const char*, ActKind> kKinds[] = {
+    {"bus_off", ActKind::kBusOff},    {"passive", ActKind::kPassive}, {"drop", ActKind::kDrop},
+    {"overflow", ActKind::kOverflow}, {"delay", ActKind::kDelay},     {"noise", ActKind::kNoise},
+    {"down", ActKind::kDown},         {"absent", ActKind::kAbsent}};
 
 struct FaultText {
   std::string kind;
@@ -115,7 +115,7 @@ void read_fault(YamlSection& entry, FaultList& faults, std::vector<SimFault>& in
                "no such fault" + known_words_text(text.kind, known));
     return;
   }
-  const bool counts = kind->second == Kind::kDrop || kind->second == Kind::kOverflow;
+  const bool counts = kind->second == ActKind::kDrop || kind->second == ActKind::kOverflow;
   if ((text.for_s > 0) == (text.count > 0) || (text.count > 0 && !counts)) {
     faults.add(
         entry.mark(), entry.path_of("for"),
@@ -181,7 +181,7 @@ LoadedCanScript load_can_script(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   if (file) text << file.rdbuf();
-  if (!file || !text || text.str().empty() || text.str().size() > kLargestFile) {
+  if (!file || !text || text.str().empty() || text.str().size() > kLargestScript) {
     const std::string reason = errno != 0 ? std::strerror(errno) : "empty, over 1 MiB or no file";
     return {{}, {path + ": cannot be read: " + reason + "; expected a script (YAML) of a CAN bus"}};
   }

@@ -8,7 +8,7 @@
 namespace zonepack {
 namespace {
 
-std::optional<double> number(std::string_view text) {
+std::optional<double> number_in(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
@@ -26,7 +26,7 @@ std::optional<CanSourceChoice> parse_can_source(const std::string& text) {
     CanSourceChoice choice{kind, text.substr(prefix.size())};
     const std::size_t at = choice.name.rfind('@');
     if (kind != Kind::kSocketCan && at != std::string::npos) {
-      if (const auto speed = number(std::string_view(choice.name).substr(at + 1))) {
+      if (const auto speed = number_in(std::string_view(choice.name).substr(at + 1))) {
         if (!(*speed >= 0.001 && *speed <= 1e6)) return std::nullopt;
         choice.speed = *speed;
         choice.name.resize(at);

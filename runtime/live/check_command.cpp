@@ -26,7 +26,7 @@ struct Row {
   std::string name, found, mend;
 };
 
-std::string reason_of(const Error& error) {
+std::string reason_text(const Error& error) {
   return error.code == ErrorCode::kIo ? std::strerror(static_cast<int>(error.detail))
                                       : to_string(error.code);
 }
@@ -105,7 +105,7 @@ class Check {
     const auto zones = static_cast<std::uint32_t>(map_->needs.size());
     const auto memory = SharedMemory::create("zoned-check", shared_map_bytes(zones, map_->slots));
     if (!memory) {
-      refuse("memory", reason_of(memory.error()), "allow less by memory.budget");
+      refuse("memory", reason_text(memory.error()), "allow less by memory.budget");
       return;
     }
     good("memory", std::to_string(memory->read_only().size()) + " bytes reserved for a moment");
@@ -114,7 +114,7 @@ class Check {
     if (locked) {
       good("memory lock", "granted");
     } else {
-      refuse_privilege("memory lock", reason_of(locked.error()),
+      refuse_privilege("memory lock", reason_text(locked.error()),
                        "LimitMEMLOCK=infinity in the unit, or realtime.lock_memory: false");
     }
     unlock_memory();
@@ -171,7 +171,7 @@ class Check {
     if (thread) {
       good("scheduler", "SCHED_FIFO " + std::to_string(realtime.priority) + " granted");
     } else {
-      refuse_privilege("scheduler", reason_of(thread.error()),
+      refuse_privilege("scheduler", reason_text(thread.error()),
                        "LimitRTPRIO=" + std::to_string(realtime.priority) +
                            " in the unit, and a processor that exists in realtime.cpu");
     }

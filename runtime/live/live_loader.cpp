@@ -14,6 +14,8 @@ std::uint64_t key_of(const LoadRequest& request) noexcept {
   return (std::uint64_t{request.zone} + 1) << 32 | request.generation;
 }
 
+}  // namespace
+
 // Tells readers where a chunk stands; chunks come in the order in which they fill the slots.
 class ChunkPlaces {
  public:
@@ -48,8 +50,6 @@ class ChunkPlaces {
   std::size_t slot_ = 0;
   std::size_t chunk_ = 0;
 };
-
-}  // namespace
 
 // A load as it runs in this thread.
 class LiveLoader::Host final : public LoadHost {

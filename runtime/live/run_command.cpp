@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kHeapBytes = 2 << 20;  // what a run takes at least, whatever the map
 
-int fail(const std::string& message, int exit_code = 1) {
+int fail_run(const std::string& message, int exit_code = 1) {
   std::cerr << "zoned run: " << message << '\n';
   return exit_code;
 }
@@ -62,22 +62,23 @@ std::optional<std::string> make_preface(const RunArguments& arguments, const Run
 
 int run_live(const RunArguments& arguments) {
   if (arguments.start.kind == StartChoice::Kind::kTruth && arguments.truth.empty()) {
-    return fail("--start truth needs --truth FILE", 2);
+    return fail_run("--start truth needs --truth FILE", 2);
   }
   std::vector<HandedFile> handed = take_handed_files();
   if (arguments.source.kind == CanSourceChoice::Kind::kSocketCan &&
       (!arguments.corrections.empty() || !arguments.truth.empty())) {
-    return fail("--corrections and --truth are on the time of a log, which socketcan: has not", 2);
+    return fail_run("--corrections and --truth are on the time of a log, which socketcan: has not",
+                    2);
   }
   hold_signals();
   use_one_heap(kHeapBytes);
   RunInputs inputs;
-  if (const auto fault = read_run_inputs(arguments, inputs)) return fail(*fault);
+  if (const auto fault = read_run_inputs(arguments, inputs)) return fail_run(*fault);
   std::string fault;
   MapTerms terms = map_terms(arguments, inputs.settings);
   terms.lease_ns = static_cast<std::int64_t>(inputs.settings.serve.lease_s * 1e9);
   auto map = RunMap::make(1, std::move(inputs.catalog), terms, fault);
-  if (!map) return fail(fault);
+  if (!map) return fail_run(fault);
   const DrivenMap& driven = map->driven();
   if (driven.warning) std::cerr << "zoned run: warning: " << *driven.warning << '\n';
 
@@ -90,7 +91,7 @@ int run_live(const RunArguments& arguments) {
        socket_path(inputs.settings.serve),
        arguments.source.kind == CanSourceChoice::Kind::kSocketCan, &notifier, &handed},
       fault, warning);
-  if (!memory) return fail(fault);
+  if (!memory) return fail_run(fault);
   if (!warning.empty()) std::cerr << "zoned run: warning: " << warning << '\n';
 
   LiveOptions options{
@@ -99,21 +100,21 @@ int run_live(const RunArguments& arguments) {
   options.recorder = {arguments.record, state_folder(inputs.settings),
                       inputs.settings.recorder.bytes};
   if (const auto bad = make_preface(arguments, inputs, map->catalog(), terms, options.preface)) {
-    return fail(*bad);
+    return fail_run(*bad);
   }
   LiveRun run(inputs, std::move(map), *memory, notifier, options);
-  if (!run.start(fault)) return fail(fault);
+  if (!run.start(fault)) return fail_run(fault);
   run.wait();
   auto summary = run.finish(fault);
-  if (!summary) return fail(fault);
+  if (!summary) return fail_run(fault);
   if (const CanLogSummary* const log = run.log_summary()) {
     tell_log_faults(arguments.source.name, *log);
     summary->can_rejected += log->broken_lines + log->stray_stamps;
   }
-  if (auto unwritten = write_summary(*summary, arguments.json)) return fail(*unwritten);
+  if (auto unwritten = write_summary(*summary, arguments.json)) return fail_run(*unwritten);
   if (summary->budget_violations > 0) {
-    return fail("a limit was exceeded in " + std::to_string(summary->budget_violations) +
-                " cycles");
+    return fail_run("a limit was exceeded in " + std::to_string(summary->budget_violations) +
+                    " cycles");
   }
   return 0;
 }

@@ -6,9 +6,9 @@
 namespace zonepack {
 namespace {
 
-using Status = SignalReading::Status;
+using SignalStatus = SignalReading::Status;
 
-bool finite(double value) noexcept { return value - value == 0; }
+bool is_finite(double value) noexcept { return value - value == 0; }
 
 std::int64_t sign_extend(std::uint64_t bits, unsigned length) noexcept {
   const unsigned unused = 64 - length;
@@ -59,7 +59,7 @@ bool is_valid(const CanSignal& signal) noexcept {
   if (signal.type == SignalType::kFloat && signal.bits.length != 32) return false;
   if (signal.type == SignalType::kDouble && signal.bits.length != 64) return false;
   if (signal.id > (signal.extended ? 0x1FFFFFFFu : 0x7FFu)) return false;
-  return finite(signal.factor) && signal.factor != 0 && finite(signal.offset);
+  return is_finite(signal.factor) && signal.factor != 0 && is_finite(signal.offset);
 }
 
 bool add_multiplexer(CanSignal& signal, const SignalBits& bits, CanSignal::Values values) noexcept {
@@ -100,20 +100,20 @@ std::uint64_t extract_bits(const SignalBits& bits, const CanFrame& frame) noexce
 
 SignalReading read_signal(const CanSignal& signal, const CanFrame& frame) noexcept {
   if (frame.error || frame.id != signal.id || frame.extended != signal.extended) return {};
-  if (frame.rtr) return {Status::kRefused};
+  if (frame.rtr) return {SignalStatus::kRefused};
   for (std::size_t level = 0; level < signal.levels; ++level) {
     const CanSignal::Multiplexer& multiplexer = signal.multiplexers[level];
-    if (frame.len < *bytes_needed(multiplexer.bits)) return {Status::kRefused};
+    if (frame.len < *bytes_needed(multiplexer.bits)) return {SignalStatus::kRefused};
     if (!selects(multiplexer, extract_bits(multiplexer.bits, frame))) return {};
   }
-  if (frame.len < *bytes_needed(signal.bits)) return {Status::kRefused};
+  if (frame.len < *bytes_needed(signal.bits)) return {SignalStatus::kRefused};
   const std::uint64_t bits = extract_bits(signal.bits, frame);
   const std::int64_t raw = signal.type == SignalType::kSigned
                                ? sign_extend(bits, signal.bits.length)
                                : static_cast<std::int64_t>(bits);
   const double value = value_of(signal, bits, raw) * signal.factor + signal.offset;
-  if (!finite(value)) return {Status::kRefused};
-  return {Status::kValue, value, raw};
+  if (!is_finite(value)) return {SignalStatus::kRefused};
+  return {SignalStatus::kValue, value, raw};
 }
 
 std::int64_t wrapped_difference(std::int64_t newest, std::int64_t previous,

@@ -99,7 +99,7 @@ double atan_octant(double small, double large) noexcept {
   return kAtanEighths[k] + (t + t * z * series);
 }
 
-bool finite(double value) noexcept { return value - value == 0; }
+bool is_finite_number(double value) noexcept { return value - value == 0; }
 
 }  // namespace
 
@@ -134,7 +134,7 @@ double det_cos(double angle_rad) noexcept {
 }
 
 double det_atan2(double y, double x) noexcept {
-  if (!finite(y) || !finite(x)) return kNan;
+  if (!is_finite_number(y) || !is_finite_number(x)) return kNan;
   double abs_y = y < 0 ? -y : y;
   double abs_x = x < 0 ? -x : x;
   if (abs_y == 0 && abs_x == 0) return 0;

@@ -6,22 +6,16 @@
 #include <optional>
 
 #include "runtime/odometry/det_math.hpp"
+#include "runtime/odometry/seconds.hpp"
 
 namespace zonepack {
 namespace {
 
 using Verdict = CorrectionVerdict;
 
-constexpr double kSecondsPerNs = 1e-9;
 constexpr std::uint32_t kFixesForTrust = 2;
 constexpr double kDriftStep_s = 0.1;   // how often missing odometry is counted in
 constexpr double kDriftEntry_s = 1.0;  // how much of it shares an entry of the history
-
-double square(double value) noexcept { return value * value; }
-
-double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
-  return static_cast<double>(to_ns - from_ns) * kSecondsPerNs;
-}
 
 UncertainPose uncertain(const Pose2& pose, double sigma_m, double sigma_rad) noexcept {
   Covariance2 covariance;

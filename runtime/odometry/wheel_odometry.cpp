@@ -5,23 +5,16 @@
 #include <cmath>
 
 #include "platform/base/require.hpp"
+#include "runtime/odometry/seconds.hpp"
 
 namespace zonepack {
 namespace {
 
 using Status = SignalReading::Status;
 
-constexpr double kSecondsPerNs = 1e-9;
-
 double magnitude(double value) noexcept { return value < 0 ? -value : value; }
-double square(double value) noexcept { return value * value; }
-
 bool is_integer(const CanSignal& signal) noexcept {
   return signal.type == SignalType::kSigned || signal.type == SignalType::kUnsigned;
-}
-
-double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
-  return static_cast<double>(to_ns - from_ns) * kSecondsPerNs;
 }
 
 // Length of a straight or sideways motion.

@@ -11,14 +11,14 @@ namespace zonepack {
 namespace {
 
 constexpr std::size_t kMapBlockContent = 512 * 1024;
-constexpr std::size_t kHeadRoom = 64;
+constexpr std::size_t kMapHeadRoom = 64;
 constexpr std::uint32_t kFirstOfAnOffer = 2;
 constexpr std::uint64_t kMostMapBytes = kMaxManifestBytes + kMiB;
 
 }  // namespace
 
 std::vector<std::byte> write_map(const RecordedMap& map) {
-  std::vector<std::byte> content(kHeadRoom + map.folder.size() + map.manifest.size());
+  std::vector<std::byte> content(kMapHeadRoom + map.folder.size() + map.manifest.size());
   ByteWriter out(content);
   out.u32(map.number);
   out.u64(map.manifest.size());

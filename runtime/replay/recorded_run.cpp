@@ -38,9 +38,9 @@ std::shared_ptr<RunMap> map_of(const RecordingReader& recording, const Settings&
 }
 
 // All that one run needs, in the order in which the parts refer to each other.
-class Run final : public EventSink {
+class RecordedDrive final : public EventSink {
  public:
-  Run(RecordingReader& recording, const RecordedRun& run, std::shared_ptr<RunMap> map)
+  RecordedDrive(RecordingReader& recording, const RecordedRun& run, std::shared_ptr<RunMap> map)
       : recording_(recording),
         settings_(run.settings),
         terms_(map->driven().terms_of_next(recording.preface().terms)),
@@ -105,16 +105,16 @@ class Run final : public EventSink {
   std::uint64_t frames_ = 0;
 };
 
-std::shared_ptr<RunMap> Run::find(std::uint32_t number) const {
+std::shared_ptr<RunMap> RecordedDrive::find(std::uint32_t number) const {
   const auto found = std::ranges::find(maps_in_use_, number, &RunMap::number);
   return found == maps_in_use_.end() ? nullptr : *found;
 }
 
-bool Run::prepare(RunMap& map, std::string& fault) {
+bool RecordedDrive::prepare(RunMap& map, std::string& fault) {
   return map.prepare(cycle_config(settings_), loader(), *this, nullptr, fault);
 }
 
-void Run::begin() {
+void RecordedDrive::begin() {
   const std::optional<RecordedStart>& start = recording_.preface().start;
   if (!start) return;
   if (start->sigma_m && start->sigma_rad) {
@@ -124,7 +124,7 @@ void Run::begin() {
   }
 }
 
-void Run::go_on_from(const Checkpoint& checkpoint) {
+void RecordedDrive::go_on_from(const Checkpoint& checkpoint) {
   for (const Checkpoint::Held& held : checkpoint.resident) {
     const std::vector<ZoneNeed>& needs = first().driven().needs;
     if (held.zone >= needs.size()) continue;
@@ -156,7 +156,7 @@ void Run::go_on_from(const Checkpoint& checkpoint) {
   for (const ZoneId zone : checkpoint.pinned) add(Command::Kind::kPin, zone);
 }
 
-bool Run::answers(const RecordedInput& input, std::string& fault) {
+bool RecordedDrive::answers(const RecordedInput& input, std::string& fault) {
   for (const LoadResult& load : input.loads) {
     const std::optional<LoadRequest> asked = recorded_.asked();
     if (recorded_.answer(load)) continue;
@@ -177,7 +177,7 @@ bool Run::answers(const RecordedInput& input, std::string& fault) {
 }
 
 // What became of loads: as recorded, or as modelled.
-bool Run::take_loads(const RecordedInput& input, std::string& fault) {
+bool RecordedDrive::take_loads(const RecordedInput& input, std::string& fault) {
   loads_.clear();
   if (exact_) {
     loads_ = input.loads;
@@ -190,7 +190,7 @@ bool Run::take_loads(const RecordedInput& input, std::string& fault) {
 }
 
 // The commands of the cycle, behind those of a checkpoint that do not fit in one.
-void Run::take_commands(const RecordedInput& input) {
+void RecordedDrive::take_commands(const RecordedInput& input) {
   waiting_.insert(waiting_.end(), input.commands.begin(), input.commands.end());
   const auto end = waiting_.begin() +
                    static_cast<std::ptrdiff_t>(std::min(waiting_.size(), Cycle::kMostCommands));
@@ -198,7 +198,7 @@ void Run::take_commands(const RecordedInput& input) {
   waiting_.erase(waiting_.begin(), end);
 }
 
-std::span<const LineEdge> Run::take_edges(const RecordedInput& input) {
+std::span<const LineEdge> RecordedDrive::take_edges(const RecordedInput& input) {
   edges_.clear();
   if (held_) edges_.push_back({input.now_ns, LineEdge::kHold, true});
   held_ = false;
@@ -206,7 +206,7 @@ std::span<const LineEdge> Run::take_edges(const RecordedInput& input) {
   return edges_;
 }
 
-bool Run::run_cycles(std::string& fault) {
+bool RecordedDrive::run_cycles(std::string& fault) {
   while (const RecordedInput* const recorded = recording_.next()) {
     if (!take_loads(*recorded, fault)) return false;
     take_commands(*recorded);
@@ -224,7 +224,7 @@ bool Run::run_cycles(std::string& fault) {
   return true;
 }
 
-bool Run::offer(std::uint32_t number, std::string& fault) {
+bool RecordedDrive::offer(std::uint32_t number, std::string& fault) {
   if (find(number) != nullptr || maps_->changing()) {
     fault = "map " + std::to_string(number) + " was offered while another was";
     return false;
@@ -236,7 +236,8 @@ bool Run::offer(std::uint32_t number, std::string& fault) {
   return true;
 }
 
-std::optional<RecordedRunResult> Run::drive(const std::string& events_path, std::string& fault) {
+std::optional<RecordedRunResult> RecordedDrive::drive(const std::string& events_path,
+                                                      std::string& fault) {
   if (!events_path.empty()) {
     if (const auto opened = log_.write_to(events_path); !opened) {
       fault = events_path + ": cannot be written: " + to_string(opened.error().code);
@@ -257,7 +258,8 @@ std::optional<RecordedRunResult> Run::drive(const std::string& events_path, std:
   return result(events_path, fault);
 }
 
-std::optional<RecordedRunResult> Run::result(const std::string& events_path, std::string& fault) {
+std::optional<RecordedRunResult> RecordedDrive::result(const std::string& events_path,
+                                                       std::string& fault) {
   auto hash = log_.finish();
   if (!hash) {
     fault = events_path + ": cannot be written: " + to_string(hash.error().code);
@@ -313,7 +315,7 @@ std::optional<RecordedRunResult> replay_recording(RecordingReader& recording,
         map_of(recording, run.settings, map->driven().terms_of_next(preface.terms), in_use, fault);
     if (map == nullptr) return std::nullopt;
   }
-  return Run(recording, run, std::move(map)).drive(events_path, fault);
+  return RecordedDrive(recording, run, std::move(map)).drive(events_path, fault);
 }
 
 }  // namespace zonepack

@@ -17,9 +17,9 @@ namespace zonepack {
 namespace {
 
 // All that one run needs, in the order in which the parts refer to each other.
-class Run {
+class LogDrive {
  public:
-  Run(ReplayInput& input, const DrivenMap& map)
+  LogDrive(ReplayInput& input, const DrivenMap& map)
       : input_(input),
         map_(map),
         memory_(map.needs.size(), map.limits),
@@ -49,7 +49,7 @@ class Run {
   std::uint64_t frames_ = 0;
 };
 
-bool Run::place_at_start(Cycle& cycle, std::int64_t start_ns, std::string& fault) {
+bool LogDrive::place_at_start(Cycle& cycle, std::int64_t start_ns, std::string& fault) {
   std::optional<Pose2> start = input_.start;
   if (input_.start_at_truth) {
     start = first_truth(input_.truth, start_ns);
@@ -62,7 +62,7 @@ bool Run::place_at_start(Cycle& cycle, std::int64_t start_ns, std::string& fault
   return true;
 }
 
-std::optional<ReplayResult> Run::drive(std::string& fault) {
+std::optional<ReplayResult> LogDrive::drive(std::string& fault) {
   if (!input_.events_path.empty()) {
     if (const auto opened = log_.write_to(input_.events_path); !opened) {
       fault = input_.events_path + ": cannot be written: " + to_string(opened.error().code);
@@ -83,7 +83,7 @@ std::optional<ReplayResult> Run::drive(std::string& fault) {
   return result(cycle, fault);
 }
 
-void Run::run_cycles(Cycle& cycle, std::int64_t start_ns) {
+void LogDrive::run_cycles(Cycle& cycle, std::int64_t start_ns) {
   std::vector<CanFrame> frames(input_.most_frames);
   std::vector<LoadResult> loads;
   const std::vector<PoseCorrection>& corrections = input_.corrections;
@@ -105,7 +105,7 @@ void Run::run_cycles(Cycle& cycle, std::int64_t start_ns) {
   }
 }
 
-std::optional<ReplayResult> Run::result(const Cycle& cycle, std::string& fault) {
+std::optional<ReplayResult> LogDrive::result(const Cycle& cycle, std::string& fault) {
   auto hash = log_.finish();
   if (!hash) {
     fault = input_.events_path + ": cannot be written: " + to_string(hash.error().code);
@@ -129,7 +129,7 @@ std::optional<ReplayResult> Run::result(const Cycle& cycle, std::string& fault) 
 std::optional<ReplayResult> replay(ReplayInput input, std::string& fault) {
   const auto map = DrivenMap::make(input.catalog, input.terms, fault);
   if (!map) return std::nullopt;
-  auto result = Run(input, *map).drive(fault);
+  auto result = LogDrive(input, *map).drive(fault);
   if (result && map->warning) result->warnings.push_back(*map->warning);
   return result;
 }

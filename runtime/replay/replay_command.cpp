@@ -17,7 +17,7 @@
 namespace zonepack {
 namespace {
 
-int fail(const std::string& message, int exit_code = 1) {
+int fail_replay(const std::string& message, int exit_code = 1) {
   std::cerr << "zoned replay: " << message << '\n';
   return exit_code;
 }
@@ -59,11 +59,11 @@ int tell_results(const ReplayArguments& arguments, const Catalog& catalog,
     std::cerr << "zoned replay: warning: " << text << '\n';
   }
   if (const auto unwritten = write_results(arguments, catalog, baseline, result)) {
-    return fail(*unwritten);
+    return fail_replay(*unwritten);
   }
   if (result.summary.budget_violations > 0) {
-    return fail("a limit was exceeded in " + std::to_string(result.summary.budget_violations) +
-                " cycles");
+    return fail_replay("a limit was exceeded in " +
+                       std::to_string(result.summary.budget_violations) + " cycles");
   }
   return 0;
 }
@@ -71,11 +71,11 @@ int tell_results(const ReplayArguments& arguments, const Catalog& catalog,
 int run_recording(const ReplayArguments& arguments) {
   std::string fault;
   auto recording = RecordingReader::open(arguments.recording, fault);
-  if (!recording) return fail(fault);
+  if (!recording) return fail_replay(fault);
   const auto run = open_recorded_run(recording->preface(), fault);
-  if (!run) return fail(arguments.recording + ": " + fault);
+  if (!run) return fail_replay(arguments.recording + ": " + fault);
   const auto result = replay_recording(*recording, *run, arguments.events, fault);
-  if (!result) return fail(arguments.recording + ": " + fault);
+  if (!result) return fail_replay(arguments.recording + ": " + fault);
   if (!recording->note().empty()) std::cerr << "zoned replay: " << recording->note() << '\n';
   if (!result->exact) {
     std::cerr << "zoned replay: " << arguments.recording << ": begins with cycle "
@@ -85,9 +85,10 @@ int run_recording(const ReplayArguments& arguments) {
   const int exit_code = tell_results(arguments, run->catalog, {}, result->replay);
   if (result->exact && result->complete && !result->live_hash.empty() &&
       result->live_hash != result->replay.summary.event_log_hash) {
-    return fail(arguments.recording + ": the events differ from those of the run (event_log_hash " +
-                result->live_hash + "); replay with the version that recorded it, " +
-                recording->preface().program);
+    return fail_replay(arguments.recording +
+                       ": the events differ from those of the run (event_log_hash " +
+                       result->live_hash + "); replay with the version that recorded it, " +
+                       recording->preface().program);
   }
   return exit_code;
 }
@@ -97,25 +98,25 @@ int run_recording(const ReplayArguments& arguments) {
 int run_replay(const ReplayArguments& arguments) {
   if (!arguments.recording.empty()) return run_recording(arguments);
   if (arguments.start.kind == StartChoice::Kind::kTruth && arguments.truth.empty()) {
-    return fail("--start truth needs --truth FILE", 2);
+    return fail_replay("--start truth needs --truth FILE", 2);
   }
   if (arguments.start.kind == StartChoice::Kind::kFix && arguments.corrections.empty()) {
     std::cerr << "zoned replay: warning: nothing ever tells where the robot is: give "
                  "--corrections FILE, or --start X,Y,YAW_DEG or truth\n";
   }
   RunInputs inputs;
-  if (const auto fault = read_run_inputs(arguments, inputs)) return fail(*fault);
+  if (const auto fault = read_run_inputs(arguments, inputs)) return fail_replay(*fault);
   std::vector<BaselineRow> baseline;
   if (!arguments.baseline.empty()) {
-    if (const auto fault = read_baseline(arguments.baseline, baseline)) return fail(*fault);
+    if (const auto fault = read_baseline(arguments.baseline, baseline)) return fail_replay(*fault);
   }
   CanLogReader log(arguments.can, inputs.settings.can.interface);
-  if (const auto opened = log.open(); !opened) return fail(log.explain(opened.error()));
+  if (const auto opened = log.open(); !opened) return fail_replay(log.explain(opened.error()));
 
   std::string fault;
   auto result = replay(replay_input(arguments, inputs, log), fault);
   tell_log_faults(arguments.can, log.summary());
-  if (!result) return fail(fault);
+  if (!result) return fail_replay(fault);
   result->summary.can_rejected += log.summary().broken_lines + log.summary().stray_stamps;
   return tell_results(arguments, inputs.catalog, baseline, *result);
 }

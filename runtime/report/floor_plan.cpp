@@ -16,7 +16,7 @@
 namespace zonepack::report {
 namespace {
 
-constexpr double kLeft = 40, kRight = 14, kAxisBelow = 40, kMostHeight = 760;
+constexpr double kPlanLeft = 40, kPlanRight = 14, kPlanAxisBelow = 40, kMostHeight = 760;
 constexpr double kMargin_m = 0.4;
 constexpr double kArrowEvery = 110;  // pixels of route
 constexpr Style kRouteHalo{.stroke = kWhite, .stroke_width = 5.5, .opacity = 0.8, .round = true};
@@ -228,12 +228,12 @@ void draw_labels(Svg& svg, const FloorPlan& plan, const PlanView& view) {
 
 Svg draw_floor_plan(const FloorPlan& plan) {
   const std::vector<LegendItem> legend = legend_of(plan);
-  const double plot_width = plan.width_px - kLeft - kRight;
+  const double plot_width = plan.width_px - kPlanLeft - kPlanRight;
   const double top = legend_height(plot_width, legend) + 8;
-  const PlanView view(area_of(plan), {kLeft, top}, plot_width, kMostHeight);
+  const PlanView view(area_of(plan), {kPlanLeft, top}, plot_width, kMostHeight);
 
-  Svg svg(plan.width_px, top + view.height() + kAxisBelow);
-  draw_legend(svg, {kLeft, 0}, plot_width, legend);
+  Svg svg(plan.width_px, top + view.height() + kPlanAxisBelow);
+  draw_legend(svg, {kPlanLeft, 0}, plot_width, legend);
   draw_axes(svg, view);
   svg.open_clip(view.corner(), view.width(), view.height());
   for (const PlanZone& zone : plan.zones) {

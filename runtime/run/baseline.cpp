@@ -17,7 +17,7 @@ enum Column : std::size_t { kTime, kWorkingMemory, kRemoved, kRetrieved, kColumn
 constexpr std::array<std::string_view, kColumns> kNames = {"t", "wm", "cum_removed",
                                                            "cum_retrieved"};
 
-std::vector<std::string_view> split(std::string_view line) {
+std::vector<std::string_view> split_cells(std::string_view line) {
   std::vector<std::string_view> cells;
   while (true) {
     const std::size_t comma = line.find(',');
@@ -27,7 +27,7 @@ std::vector<std::string_view> split(std::string_view line) {
   }
 }
 
-std::optional<double> number(std::string_view text) noexcept {
+std::optional<double> cell_value(std::string_view text) noexcept {
   double value = 0;
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, value);
@@ -46,7 +46,7 @@ class Reader {
       ++line_;
       if (line.ends_with('\r')) line.pop_back();
       if (line.empty() || line.starts_with('#')) continue;
-      const std::vector<std::string_view> cells = split(line);
+      const std::vector<std::string_view> cells = split_cells(line);
       if (const auto problem = width_ == 0 ? header(cells) : row(cells)) return problem;
     }
     if (in.bad()) return path_ + ": cannot read the baseline to its end";
@@ -86,7 +86,7 @@ class Reader {
     }
     std::array<double, kColumns> values{};
     for (std::size_t i = 0; i < kColumns; ++i) {
-      const std::optional<double> value = number(cells[columns_[i]]);
+      const std::optional<double> value = cell_value(cells[columns_[i]]);
       if (!value) {
         return at("column " + std::string(kNames[i]) + ": '" + std::string(cells[columns_[i]]) +
                   "' is not a number");

@@ -17,7 +17,7 @@ using report::format_number;
 using report::format_seconds;
 using report::Report;
 
-std::string bytes_text(ByteCount bytes) { return format_bytes(static_cast<double>(bytes)); }
+std::string short_bytes(ByteCount bytes) { return format_bytes(static_cast<double>(bytes)); }
 
 std::string percent(ByteCount part, ByteCount whole) {
   return format_number(100 * static_cast<double>(part) / static_cast<double>(whole), 1) + " %";
@@ -33,9 +33,9 @@ std::string headline(const RunSummary& s) {
   if (s.budget_violations > 0) {
     return text + "The limit was exceeded in " + counted(s.budget_violations, "cycle.", "cycles.");
   }
-  text += "The map never took more than " + bytes_text(s.peak_charged_bytes);
+  text += "The map never took more than " + short_bytes(s.peak_charged_bytes);
   if (s.budget_bytes > 0) {
-    text += " of its budget of " + bytes_text(s.budget_bytes) + " (" +
+    text += " of its budget of " + short_bytes(s.budget_bytes) + " (" +
             percent(s.peak_charged_bytes, s.budget_bytes) + ")";
   }
   return text + (s.zone_absent_s > 0 ? ", but the robot's own zone was missing for " +
@@ -46,8 +46,8 @@ std::string headline(const RunSummary& s) {
 std::vector<Fact> facts_of(const RunReportInput& input) {
   const RunSummary& s = input.summary;
   std::vector<Fact> facts = {
-      {"budget", bytes_text(s.budget_bytes), format_count(s.budget_bytes) + " bytes"},
-      {"most charged", bytes_text(s.peak_charged_bytes),
+      {"budget", short_bytes(s.budget_bytes), format_count(s.budget_bytes) + " bytes"},
+      {"most charged", short_bytes(s.peak_charged_bytes),
        format_count(s.peak_charged_bytes) + " bytes"},
       {"over a limit", counted(s.budget_violations, "cycle", "cycles"),
        "of " + format_count(s.cycles), s.budget_violations > 0},
@@ -56,7 +56,7 @@ std::vector<Fact> facts_of(const RunReportInput& input) {
                             : "no limit on their number"},
       {"zones loaded, unloaded",
        format_count(s.zones_loaded) + ", " + format_count(s.zones_unloaded),
-       bytes_text(s.bytes_loaded) + " loaded"},
+       short_bytes(s.bytes_loaded) + " loaded"},
       {"own zone not in memory", format_seconds(s.zone_absent_s),
        "after the start of " + format_seconds(s.start_s), s.zone_absent_s > 0},
       {"waiting for room", format_seconds(s.blocked_s), "a wanted zone did not fit"},

@@ -17,7 +17,7 @@ std::string words_of() {
 }
 
 // Allowed values and the default, by kind.
-struct Kind {
+struct FieldKind {
   double least, most;
   const char* unit;
 
@@ -65,7 +65,7 @@ std::string rows(const Fields<Section>& fields) {
   const Section defaults{};
   std::string text;
   for (const Field<Section>& field : fields) {
-    const Kind kind{field.least, field.most, field.unit};
+    const FieldKind kind{field.least, field.most, field.unit};
     std::visit(
         [&](auto member) {
           text += "| " + std::string(field.key) + " | " + kind.allowed(defaults.*member) + " | " +

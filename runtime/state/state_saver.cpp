@@ -12,7 +12,7 @@
 namespace zonepack {
 namespace {
 
-constexpr std::int64_t kTurn_ns = 50'000'000;
+constexpr std::int64_t kSaverTurn_ns = 50'000'000;
 constexpr std::size_t kStackBytes = 64 * 1024;
 constexpr double kLessSure = 2;
 
@@ -31,7 +31,7 @@ Result<void> StateSaver::start() {
   auto thread = Thread::start({.name = "zoned-state", .stack_bytes = kStackBytes}, true, [this] {
     while (!stop_.load()) {
       watch();
-      sleep_until_ns(monotonic_ns() + kTurn_ns);
+      sleep_until_ns(monotonic_ns() + kSaverTurn_ns);
     }
   });
   if (!thread) return thread.error();

@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The heap of glibc, with a note to AllocationWatch in front. Linked into zoned; not together with
-// sanitizers, which bring a heap of their own.
+// The heap of glibc, with a note to AllocationWatch in front. Empty under sanitizers, which bring a
+// heap of their own.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define ZONEPACK_FOREIGN_HEAP
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define ZONEPACK_FOREIGN_HEAP
+#endif
+#ifndef ZONEPACK_FOREIGN_HEAP
+
 #include <cerrno>
 #include <cstddef>
 
@@ -16,32 +26,32 @@ void* __libc_realloc(void* block, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 void __libc_free(void* block);
 
-void* malloc(std::size_t size) {
+void* malloc(std::size_t size) noexcept {
   note();
   return __libc_malloc(size);
 }
 
-void* calloc(std::size_t count, std::size_t size) {
+void* calloc(std::size_t count, std::size_t size) noexcept {
   note();
   return __libc_calloc(count, size);
 }
 
-void* realloc(void* block, std::size_t size) {
+void* realloc(void* block, std::size_t size) noexcept {
   note();
   return __libc_realloc(block, size);
 }
 
-void* memalign(std::size_t alignment, std::size_t size) {
+void* memalign(std::size_t alignment, std::size_t size) noexcept {
   note();
   return __libc_memalign(alignment, size);
 }
 
-void* aligned_alloc(std::size_t alignment, std::size_t size) {
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
   note();
   return __libc_memalign(alignment, size);
 }
 
-int posix_memalign(void** block, std::size_t alignment, std::size_t size) {
+int posix_memalign(void** block, std::size_t alignment, std::size_t size) noexcept {
   note();
   void* const made = __libc_memalign(alignment, size);
   if (made == nullptr) return ENOMEM;
@@ -49,9 +59,11 @@ int posix_memalign(void** block, std::size_t alignment, std::size_t size) {
   return 0;
 }
 
-void free(void* block) {
+void free(void* block) noexcept {
   if (block != nullptr) note();
   __libc_free(block);
 }
 
 }  // extern "C"
+
+#endif  // ZONEPACK_FOREIGN_HEAP

@@ -9,7 +9,7 @@ namespace zonepack {
 namespace {
 
 // Portal ends may stand a little off the borders that they join.
-constexpr double kPortalSlack_m = 0.2;
+constexpr double kPortalOffBorder_m = 0.2;
 
 }  // namespace
 
@@ -63,7 +63,8 @@ bool ZoneTracker::update(const PoseEstimate& pose) noexcept {
   pose_zone_ = other;
   if (keeps_confirmed(point, sigma_m)) return false;
   const double depth_m = graph_.depth_m(other, point);
-  const bool through_portal = portal_leads_to(other, point, depth_m + 3 * sigma_m + kPortalSlack_m);
+  const bool through_portal =
+      portal_leads_to(other, point, depth_m + 3 * sigma_m + kPortalOffBorder_m);
   const double needed_m = through_portal
                               ? std::clamp(sigma_m, settings_.least_depth_m, settings_.most_depth_m)
                               : settings_.wall_depth_m + 3 * sigma_m;

@@ -17,6 +17,6 @@ forbid "a client knows loaded zones, their layout and the protocol only" runtime
 forbid "the runtime must not know the packer" runtime 'packer/|sqlite3\.h|opencv|nlohmann'
 forbid "packer and runtime share the pack format and the pictures only" packer 'runtime/(map|memory|zones|odometry|replay|settings|localize|serve)/|runtime/[a-z_]+\.hpp'
 forbid "system headers stay in platform/linux" "platform/base platform/sim runtime" 'linux/|sys/(mman|socket|epoll|ioctl)\.h|gpiod'
-forbid "libgpiod has one file, so that another version needs one more" "platform runtime packer tests" 'gpiod\.h' '^platform/linux/gpiod_line\.cpp'
+forbid "libgpiod has one file, so that another version needs one more" "platform runtime packer tests" 'gpiod\.h' '^platform/linux/gpiod/gpiod_line\.cpp'
 forbid "products do not include tests" "platform runtime packer" 'tests/'
 exit $bad

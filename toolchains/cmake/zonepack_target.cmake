@@ -2,26 +2,33 @@
 # What every target of the project shares: warnings, include root, bit-exact arithmetic.
 
 find_package(Threads REQUIRED)
-include(zonepack_unity)
 
-# zonepack_library(NAME DIR...): a static library of every .cpp below the given folders.
-function(zonepack_library name)
+# The sources of these folders, not of folders below them: a folder is a library or part of one.
+function(zonepack_sources_of result)
   set(sources)
   foreach(dir ${ARGN})
-    file(GLOB_RECURSE found CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${dir}/*.cpp)
+    file(GLOB found CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${dir}/*.cpp)
     list(APPEND sources ${found})
   endforeach()
-  zonepack_library_of(${name} ${sources})
+  list(SORT sources)
+  set(${result} ${sources} PARENT_SCOPE)
 endfunction()
 
-# zonepack_library_of(NAME FILE...): a static library of these sources.
-function(zonepack_library_of name)
-  set(sources ${ARGN})
-  list(SORT sources)
+# zonepack_library(NAME DIR...): a static library of these folders.
+function(zonepack_library name)
+  zonepack_sources_of(sources ${ARGN})
   add_library(zonepack_${name} STATIC ${sources})
   add_library(zonepack::${name} ALIAS zonepack_${name})
   set_target_properties(zonepack_${name} PROPERTIES EXPORT_NAME ${name})
   zonepack_settings(zonepack_${name})
+endfunction()
+
+# zonepack_program(NAME DIR): a program of this folder.
+function(zonepack_program name dir)
+  zonepack_sources_of(sources ${dir})
+  add_executable(${name} ${sources})
+  zonepack_settings(${name})
+  target_compile_definitions(${name} PRIVATE ZONEPACK_VERSION="${PROJECT_VERSION}")
 endfunction()
 
 # The same flags everywhere, so that code which decides gives the same bits on every compiler.
@@ -29,7 +36,6 @@ endfunction()
 # Its vectoriser of straight code makes fused multiply-adds even with -ffp-contract=off where the target
 # has them (-march=native), so it is off.
 function(zonepack_settings target)
-  zonepack_compile_alone()
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off
                          $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -fno-tree-slp-vectorize> $<$<BOOL:${ZONEPACK_WERROR}>:-Werror>)
   target_compile_definitions(${target} PRIVATE EIGEN_DONT_VECTORIZE)

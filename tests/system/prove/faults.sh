@@ -140,7 +140,7 @@ start "log:$drive/can0.log@1"
 { cut_while_loading && until_status '.loads_given_up > 0' && until_status '.zones_loaded > 0' && finish TERM &&
   told "zone $(cat cut.txt) cannot be loaded" && happened load_failed "$(cat cut.txt)"; } || code=$?
 verdict "pack truncated while mapped" $code
-unit "pack truncated while mapped: SIGBUS" test_packer 'Modes/LoadFaults.Cut*:*LoadFaults.Cut*'
+unit "pack truncated while mapped: SIGBUS" test_map 'Modes/LoadFaults.Cut*:*LoadFaults.Cut*'
 unit "the same, any thread, any moment" test_platform 'GuardedCopy.*'
 settings ''
 broken_pack "file removed" "load_failed: not found" "not found" rm map/C2-*.zpk
@@ -154,10 +154,10 @@ flip() {  # in the header, the first chunk, the middle, and the tail
   done
 }
 broken_pack "bits flipped in place" "load_failed by its checksum" "" flip
-unit "every bit of every region flipped" test_packer \
-  'ExhaustiveDamage.EveryFlippedBit*:*LoaderDamage.AnyFlippedBit*:LyingManifests.WithAnyBit*'
-unit "removed, replaced, overwritten while loading" test_packer '*LoadFaults.Removed*:*LoadFaults.Replaced*:*LoadFaults.Over*'
-unit "EIO in the middle of a load" test_packer '*LoadFaults.ADiskThatFails*'
+unit "every bit of every region flipped" test_packer 'ExhaustiveDamage.EveryFlippedBit*:LyingManifests.WithAnyBit*'
+unit "every bit of every region flipped, loaded" test_map '*LoaderDamage.AnyFlippedBit*'
+unit "removed, replaced, overwritten while loading" test_map '*LoadFaults.Removed*:*LoadFaults.Replaced*:*LoadFaults.Over*'
+unit "EIO in the middle of a load" test_map '*LoadFaults.ADiskThatFails*'
 if ((EUID == 0)) && setpriv --reuid=65534 --regid=65534 --clear-groups test -r "$work/first/manifest.zpm" -a -x "$bin/zoned"; then
   as=(setpriv --reuid=65534 --regid=65534 --clear-groups)
   privilege=(--allow-degraded)
@@ -166,7 +166,7 @@ if ((EUID == 0)) && setpriv --reuid=65534 --regid=65534 --clear-groups test -r "
   as=() privilege=()
   chrt -f 1 true 2>/dev/null || privilege=(--allow-degraded)
 else
-  unit "permission lost" test_packer '*LoadFaults.NotAllowed*'
+  unit "permission lost" test_map '*LoadFaults.NotAllowed*'
 fi
 code=0 seen="the old map stays in use"
 "$source/tests/system/map_change_test.sh" "$bin" "$source" >out.txt 2>&1 || { code=1; reason=$(head -1 out.txt); }
@@ -186,7 +186,7 @@ if mount -t tmpfs -o size=64k none state 2>/dev/null; then
   verdict "ENOSPC for state" $code
   umount state && mounted=
 else
-  unit "ENOSPC for state" test_runtime 'StateSaverTest.CountsWhatCannotBeSaved*'
+  unit "ENOSPC for state" test_state 'StateSaverTest.CountsWhatCannotBeSaved*'
 fi
 rm -rf state
 settings ''
@@ -223,7 +223,7 @@ if ((code == 77)); then
 else
   verdict "loader stuck in the kernel" $code
 fi
-unit "a load given up while the disk stands still" test_runtime 'Loading.*Pause*:Loading.*Cancelled*'
+unit "a load given up while the disk stands still" test_live 'Loading.*Pause*:Loading.*Cancelled*'
 
 # --- killed ---
 settings 's/bytes: 67108864 /bytes: 2097152 /'

@@ -17,10 +17,10 @@
 namespace zonepack {
 namespace {
 
-constexpr ByteCount kBytes = 64 * kKiB;
+constexpr ByteCount kSharedBytes = 64 * kKiB;
 
 SharedMemory make() {
-  auto memory = SharedMemory::create("zonepack-test", kBytes);
+  auto memory = SharedMemory::create("zonepack-test", kSharedBytes);
   EXPECT_TRUE(memory.ok());
   return std::move(*memory);
 }
@@ -38,9 +38,9 @@ TEST(SharedMemory, ShowsReadersWhatTheWriterWrites) {
   SharedMemory memory = make();
   auto reader = SharedMemory::map_read_only(memory.reader_file().value());
   ASSERT_TRUE(reader.ok());
-  ASSERT_EQ(reader->read_only().size(), kBytes);
-  memory.bytes()[kBytes - 1] = std::byte{42};
-  EXPECT_EQ(reader->read_only()[kBytes - 1], std::byte{42});
+  ASSERT_EQ(reader->read_only().size(), kSharedBytes);
+  memory.bytes()[kSharedBytes - 1] = std::byte{42};
+  EXPECT_EQ(reader->read_only()[kSharedBytes - 1], std::byte{42});
 }
 
 TEST(SharedMemory, CannotBeMappedWritableByAReader) {
@@ -48,13 +48,14 @@ TEST(SharedMemory, CannotBeMappedWritableByAReader) {
   const auto file = memory.reader_file();
   ASSERT_TRUE(file.ok());
   errno = 0;
-  EXPECT_EQ(mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_SHARED, file->get(), 0), MAP_FAILED);
+  EXPECT_EQ(mmap(nullptr, kSharedBytes, PROT_READ | PROT_WRITE, MAP_SHARED, file->get(), 0),
+            MAP_FAILED);
   EXPECT_EQ(errno, EACCES);
-  void* const mapped = mmap(nullptr, kBytes, PROT_READ, MAP_SHARED, file->get(), 0);
+  void* const mapped = mmap(nullptr, kSharedBytes, PROT_READ, MAP_SHARED, file->get(), 0);
   ASSERT_NE(mapped, MAP_FAILED);
-  EXPECT_NE(mprotect(mapped, kBytes, PROT_READ | PROT_WRITE), 0);
+  EXPECT_NE(mprotect(mapped, kSharedBytes, PROT_READ | PROT_WRITE), 0);
   EXPECT_EQ(errno, EACCES);
-  munmap(mapped, kBytes);
+  munmap(mapped, kSharedBytes);
   EXPECT_LT(write(file->get(), "x", 1), 0);
 }
 
@@ -76,7 +77,7 @@ TEST(SharedMemory, NeverChangesItsSize) {
   const SharedMemory memory = make();
   EXPECT_NE(ftruncate(memory.file().get(), 0), 0);
   EXPECT_EQ(errno, EPERM);
-  EXPECT_NE(ftruncate(memory.file().get(), 2 * kBytes), 0);
+  EXPECT_NE(ftruncate(memory.file().get(), 2 * kSharedBytes), 0);
 }
 
 // Apart from the thread sanitizer, which would write to pages of its own beside.
@@ -97,7 +98,7 @@ TEST(SharedMemory, IsTakenOverWithItsContentByTheNextWriter) {
   const auto reader = SharedMemory::map_read_only(memory.reader_file().value());
   auto kept = memory.file().share();
   { const SharedMemory ended(std::move(memory)); }
-  auto next = SharedMemory::adopt(std::move(*kept), kBytes);
+  auto next = SharedMemory::adopt(std::move(*kept), kSharedBytes);
   ASSERT_TRUE(next.ok());
   EXPECT_EQ(next->bytes()[7], std::byte{9});
   next->bytes()[7] = std::byte{10};
@@ -106,10 +107,10 @@ TEST(SharedMemory, IsTakenOverWithItsContentByTheNextWriter) {
 
 TEST(SharedMemory, RefusesMemoryOfAnotherSizeAndFilesThatCanShrink) {
   const SharedMemory memory = make();
-  EXPECT_EQ(SharedMemory::adopt(memory.file().share().value(), kBytes - 1).error(),
-            (Error{ErrorCode::kMismatch, kBytes}));
+  EXPECT_EQ(SharedMemory::adopt(memory.file().share().value(), kSharedBytes - 1).error(),
+            (Error{ErrorCode::kMismatch, kSharedBytes}));
   Descriptor loose(memfd_create("loose", MFD_CLOEXEC));
-  ASSERT_EQ(ftruncate(loose.get(), kBytes), 0);
+  ASSERT_EQ(ftruncate(loose.get(), kSharedBytes), 0);
   EXPECT_EQ(SharedMemory::map_read_only(std::move(loose)).error().code, ErrorCode::kMismatch);
 }
 

@@ -16,7 +16,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr PayloadMask kFeatures = kCoreOnly | mask_of(fb::PayloadKind::Features);
+constexpr PayloadMask kFeaturesOnly = kCoreOnly | mask_of(fb::PayloadKind::Features);
 constexpr ZoneId kA = 0, kB = 1, kC = 2, kD = 3;
 constexpr ByteCount kSlot = kSlotBytes + kTableBytesPerSlot;
 
@@ -47,7 +47,7 @@ class RowOfRooms {
     content.plan = &plan;
     content.packs = &packs;
     for (const PackSummary& pack : packs) content.nodes.emplace_back(pack.signatures);
-    content.payload = kFeatures;
+    content.payload = kFeaturesOnly;
     content.source_kind = "test";
     file_ = manifest_bytes(content);
   }
@@ -62,7 +62,7 @@ class RowOfRooms {
 
 TEST(MapPlan, CountsSlotsAndStoredBytesOfThePayload) {
   const RowOfRooms map;
-  const MapPlan with = plan_map(map.manifest(), kFeatures, {}, std::nullopt);
+  const MapPlan with = plan_map(map.manifest(), kFeaturesOnly, {}, std::nullopt);
   ASSERT_EQ(with.zones.size(), 4u);
   EXPECT_EQ(with.zones[kC].name, "C");
   EXPECT_EQ(with.zones[kC].signatures, 30u);
@@ -75,7 +75,7 @@ TEST(MapPlan, CountsSlotsAndStoredBytesOfThePayload) {
 
 TEST(MapPlan, TakesTheLargestPairOfNeighbours) {
   const RowOfRooms map;
-  const MapPlan plan = plan_map(map.manifest(), kFeatures, {}, std::nullopt);
+  const MapPlan plan = plan_map(map.manifest(), kFeaturesOnly, {}, std::nullopt);
   // A-B 4 + 3, B-C 3 + 5, C-D 5 + 1. A and C, 9 slots, are no neighbours.
   EXPECT_EQ(plan.smallest.slots, 8u);
   EXPECT_EQ(plan.smallest.pair.zone_a, kB);
@@ -87,7 +87,7 @@ TEST(MapPlan, TakesTheLargestPairOfNeighbours) {
 TEST(MapPlan, HoldsPinnedZonesBesideEveryPair) {
   const RowOfRooms map;
   const ZoneId pinned[] = {kB};
-  const MapPlan plan = plan_map(map.manifest(), kFeatures, pinned, std::nullopt);
+  const MapPlan plan = plan_map(map.manifest(), kFeaturesOnly, pinned, std::nullopt);
   // B is held: A-B needs 4 more, B-C 5, C-D 6.
   EXPECT_EQ(plan.smallest.slots, 3u + 6u);
   EXPECT_EQ(plan.smallest.pair.zone_a, kC);
@@ -101,12 +101,12 @@ TEST(MapPlan, PromisesTheBudgetUnderWhichTheRobotPins) {
   const RowOfRooms map;
   const test_support::TemporaryFolder folder;
   ASSERT_TRUE(write_file_atomically(folder / std::string(kManifestName), map.text()).ok());
-  const Result<Catalog> catalog = Catalog::open(folder.path().string(), kFeatures);
+  const Result<Catalog> catalog = Catalog::open(folder.path().string(), kFeaturesOnly);
   ASSERT_TRUE(catalog.ok());
   for (const ZoneId zone : {kA, kB, kC, kD}) {
     const ZoneId pinned[] = {zone};
     const ByteCount smallest =
-        plan_map(map.manifest(), kFeatures, pinned, std::nullopt).smallest.bytes;
+        plan_map(map.manifest(), kFeaturesOnly, pinned, std::nullopt).smallest.bytes;
     const ResidencyLimits limits = limits_for(*catalog, smallest, 0, {zone});
     Residency enough(catalog->zones.size(), limits);
     EXPECT_TRUE(enough.pin(zone, needs_of(*catalog)[zone]).ok()) << zone;
@@ -118,8 +118,9 @@ TEST(MapPlan, PromisesTheBudgetUnderWhichTheRobotPins) {
 
 TEST(MapPlan, SaysThatTheSmallestBudgetSufficesAndOneByteLessDoesNot) {
   const RowOfRooms map;
-  const ByteCount smallest = plan_map(map.manifest(), kFeatures, {}, std::nullopt).smallest.bytes;
-  const BudgetPlan enough = *plan_map(map.manifest(), kFeatures, {}, smallest).budget;
+  const ByteCount smallest =
+      plan_map(map.manifest(), kFeaturesOnly, {}, std::nullopt).smallest.bytes;
+  const BudgetPlan enough = *plan_map(map.manifest(), kFeaturesOnly, {}, smallest).budget;
   EXPECT_TRUE(enough.suffices);
   EXPECT_EQ(enough.slots, 8u);
   EXPECT_THAT(enough.zones_without_room, IsEmpty());
@@ -127,7 +128,7 @@ TEST(MapPlan, SaysThatTheSmallestBudgetSufficesAndOneByteLessDoesNot) {
   EXPECT_EQ(enough.largest_zones_at_once, 1u);  // C and A take 9
   EXPECT_FALSE(enough.whole_map);
 
-  const BudgetPlan less = *plan_map(map.manifest(), kFeatures, {}, smallest - 1).budget;
+  const BudgetPlan less = *plan_map(map.manifest(), kFeaturesOnly, {}, smallest - 1).budget;
   EXPECT_FALSE(less.suffices);
   EXPECT_EQ(less.slots, 7u);
   EXPECT_THAT(less.zones_without_room, IsEmpty());
@@ -136,8 +137,8 @@ TEST(MapPlan, SaysThatTheSmallestBudgetSufficesAndOneByteLessDoesNot) {
 
 TEST(MapPlan, NamesZonesWithoutRoomAndThenOnlyPairsThatWouldFitAlone) {
   const RowOfRooms map;
-  const ByteCount fixed = plan_map(map.manifest(), kFeatures, {}, std::nullopt).fixed_bytes;
-  const BudgetPlan plan = *plan_map(map.manifest(), kFeatures, {}, fixed + 4 * kSlot).budget;
+  const ByteCount fixed = plan_map(map.manifest(), kFeaturesOnly, {}, std::nullopt).fixed_bytes;
+  const BudgetPlan plan = *plan_map(map.manifest(), kFeaturesOnly, {}, fixed + 4 * kSlot).budget;
   EXPECT_THAT(plan.zones_without_room, ElementsAre(kC));
   EXPECT_THAT(plan.pairs_without_room, ElementsAre(ZonePair(kA, kB)));
   EXPECT_EQ(plan.largest_zones_at_once, 0u);
@@ -145,21 +146,23 @@ TEST(MapPlan, NamesZonesWithoutRoomAndThenOnlyPairsThatWouldFitAlone) {
 
 TEST(MapPlan, KnowsWhenTheWholeMapFits) {
   const RowOfRooms map;
-  const ByteCount fixed = plan_map(map.manifest(), kFeatures, {}, std::nullopt).fixed_bytes;
+  const ByteCount fixed = plan_map(map.manifest(), kFeaturesOnly, {}, std::nullopt).fixed_bytes;
   const ZoneId pinned[] = {kD};
-  const BudgetPlan all = *plan_map(map.manifest(), kFeatures, pinned, fixed + 13 * kSlot).budget;
+  const BudgetPlan all =
+      *plan_map(map.manifest(), kFeaturesOnly, pinned, fixed + 13 * kSlot).budget;
   EXPECT_TRUE(all.whole_map);
   EXPECT_EQ(all.largest_zones_at_once, 4u);
   // With D held, 12 slots leave 11 for C, A and B, which take 12.
-  const BudgetPlan most = *plan_map(map.manifest(), kFeatures, pinned, fixed + 12 * kSlot).budget;
+  const BudgetPlan most =
+      *plan_map(map.manifest(), kFeaturesOnly, pinned, fixed + 12 * kSlot).budget;
   EXPECT_FALSE(most.whole_map);
   EXPECT_EQ(most.largest_zones_at_once, 3u);
 }
 
 TEST(MapPlan, FindsNoRoomInABudgetThatDoesNotPayForTheTables) {
   const RowOfRooms map;
-  const ByteCount fixed = plan_map(map.manifest(), kFeatures, {}, std::nullopt).fixed_bytes;
-  const BudgetPlan plan = *plan_map(map.manifest(), kFeatures, {}, fixed - 1).budget;
+  const ByteCount fixed = plan_map(map.manifest(), kFeaturesOnly, {}, std::nullopt).fixed_bytes;
+  const BudgetPlan plan = *plan_map(map.manifest(), kFeaturesOnly, {}, fixed - 1).budget;
   EXPECT_FALSE(plan.suffices);
   EXPECT_EQ(plan.slots, 0u);
   EXPECT_EQ(plan.zones_without_room.size(), 4u);

@@ -15,8 +15,8 @@ namespace {
 using test_support::bytes_of;
 using test_support::level_pose;
 
-const std::string kFile = "map.db";
-const Place kPlace{&kFile, 7, "Data.scan_info"};
+const std::string kDatabase = "map.db";
+const Place kNode{&kDatabase, 7, "Data.scan_info"};
 
 std::vector<float> with_local(std::vector<float> values) {
   const Transform local = level_pose(1, 2, 3);
@@ -42,7 +42,7 @@ TEST(ScanFormats, HaveTheChannelsOfTheirPoints) {
 
 TEST(ScanInfo, OfEveryVersionIsTakenApart) {
   Scan scan;
-  parse_scan_info(bytes_of(with_local({6, 0.5f, 30, -3, 3, 0.25f, 900})), {0, 18, 0}, kPlace, scan);
+  parse_scan_info(bytes_of(with_local({6, 0.5f, 30, -3, 3, 0.25f, 900})), {0, 18, 0}, kNode, scan);
   EXPECT_EQ(scan.format, 6);
   EXPECT_EQ(scan.range_min, 0.5f);
   EXPECT_EQ(scan.range_max, 30);
@@ -53,14 +53,14 @@ TEST(ScanInfo, OfEveryVersionIsTakenApart) {
   EXPECT_EQ(scan.local_transform, level_pose(1, 2, 3));
 
   Scan with_format;
-  parse_scan_info(bytes_of(with_local({360, 25, 5})), {0, 16, 1}, kPlace, with_format);
+  parse_scan_info(bytes_of(with_local({360, 25, 5})), {0, 16, 1}, kNode, with_format);
   EXPECT_EQ(with_format.format, 5);
   EXPECT_EQ(with_format.range_max, 25);
   EXPECT_EQ(with_format.max_points, 360);
   EXPECT_EQ(with_format.local_transform, level_pose(1, 2, 3));
 
   Scan without_format;
-  parse_scan_info(bytes_of(with_local({360, 25})), {0, 11, 10}, kPlace, without_format);
+  parse_scan_info(bytes_of(with_local({360, 25})), {0, 11, 10}, kNode, without_format);
   EXPECT_EQ(without_format.format, 0);
   EXPECT_EQ(without_format.max_points, 360);
   EXPECT_EQ(without_format.local_transform, level_pose(1, 2, 3));
@@ -68,7 +68,7 @@ TEST(ScanInfo, OfEveryVersionIsTakenApart) {
 
 TEST(ScanInfo, OfNoScanLeavesTheFormatOpen) {
   Scan scan;
-  parse_scan_info({}, {0, 23, 8}, kPlace, scan);
+  parse_scan_info({}, {0, 23, 8}, kNode, scan);
   EXPECT_EQ(scan.format, 0);
   EXPECT_EQ(scan.local_transform, Transform{});
 }

@@ -16,8 +16,8 @@ using test_support::bytes_of;
 using test_support::float_matrix;
 using test_support::zip;
 
-const std::string kFile = "map.db";
-const Place kPlace{&kFile, 7, "Data.scan"};
+const std::string kZlibFile = "map.db";
+const Place kZlibPlace{&kZlibFile, 7, "Data.scan"};
 
 Bytes with_trailer(Bytes stream, std::int32_t rows, std::int32_t cols, std::int32_t type) {
   const Bytes trailer = bytes_of(std::vector<std::int32_t>{rows, cols, type});
@@ -31,7 +31,7 @@ TEST(MatrixUnpacker, GivesBackWhatWasZippedAndReusesTheMatrix) {
   for (const std::int32_t cols : {100, 3, 0, 50}) {
     const Matrix in =
         float_matrix(1, cols, 2, std::vector<float>(static_cast<std::size_t>(cols) * 2, 2.5f));
-    unpacker.unpack(zip(in), kPlace, out);
+    unpacker.unpack(zip(in), kZlibPlace, out);
     EXPECT_EQ(out.rows, 1);
     EXPECT_EQ(out.cols, cols);
     EXPECT_EQ(out.type, 13);  // 5 (float32) + 8 * (2 channels - 1)
@@ -45,8 +45,8 @@ TEST(MatrixUnpacker, GoesOnAfterDamage) {
   const Matrix in = float_matrix(1, 10, 1, std::vector<float>(10, 1.0f));
   Bytes blob = zip(in);
   blob[4] ^= std::byte{0xff};
-  EXPECT_THROW(unpacker.unpack(blob, kPlace, out), DamagedSignature);
-  unpacker.unpack(zip(in), kPlace, out);
+  EXPECT_THROW(unpacker.unpack(blob, kZlibPlace, out), DamagedSignature);
+  unpacker.unpack(zip(in), kZlibPlace, out);
   EXPECT_EQ(out.data, in.data);
 }
 
@@ -57,7 +57,7 @@ TEST(MatrixUnpacker, TakesNoMemoryForASizeThatCannotBe) {
   // bytes of deflate hold at most 100 * 1032 bytes.
   for (const auto& [rows, cols, type] : std::vector<std::array<std::int32_t, 3>>{
            {2147483647, 2147483647, 0xffe}, {1, 268435457, 0}, {1, 200000000, 0}, {1, 200000, 0}}) {
-    EXPECT_THROW(unpacker.unpack(with_trailer(Bytes(100), rows, cols, type), kPlace, out),
+    EXPECT_THROW(unpacker.unpack(with_trailer(Bytes(100), rows, cols, type), kZlibPlace, out),
                  DamagedSignature);
     EXPECT_EQ(out.data.capacity(), 0u);
   }
@@ -67,7 +67,7 @@ TEST(MatrixUnpacker, NamesTheFileOnlyWhereNoSignatureIsToBlame) {
   MatrixUnpacker unpacker;
   Matrix out;
   try {
-    unpacker.unpack(Bytes(3), {&kFile, 0, "Admin.opt_ids"}, out);
+    unpacker.unpack(Bytes(3), {&kZlibFile, 0, "Admin.opt_ids"}, out);
     FAIL();
   } catch (const DamagedSignature&) {
     FAIL() << "blamed signature 0";

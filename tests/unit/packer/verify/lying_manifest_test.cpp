@@ -15,7 +15,7 @@ namespace {
 
 using test_support::SmallMap;
 
-std::string list(const Problems& problems) {
+std::string listed(const Problems& problems) {
   std::string text;
   for (const Problem& problem : problems) text += to_string(problem) + "\n";
   return text;
@@ -36,7 +36,7 @@ TEST_P(LyingManifest, IsFound) {
   GetParam().tell(map);
   map.write_manifest();
   const Verdict verdict = verify_map(map.folder);
-  EXPECT_THAT(list(verdict.problems), testing::HasSubstr(GetParam().found));
+  EXPECT_THAT(listed(verdict.problems), testing::HasSubstr(GetParam().found));
 }
 
 void move_node(SmallMap& map, float dx, float dy, float dz, float dyaw) {
@@ -205,7 +205,7 @@ TEST(LyingManifests, ThatAreMissingLeaveThePacksToBeCheckedByThemselves) {
   map.folder.files[map.packs[1].file].back() ^= std::byte{1};
   const Verdict verdict = verify_map(map.folder);
   EXPECT_EQ(verdict.packs, 2u);
-  ASSERT_EQ(verdict.problems.size(), 2u) << list(verdict.problems);
+  ASSERT_EQ(verdict.problems.size(), 2u) << listed(verdict.problems);
   EXPECT_EQ(verdict.problems[0].place.file, kManifestName);
   EXPECT_EQ(verdict.problems[1].place.file, map.packs[1].file);
 }
@@ -216,7 +216,7 @@ TEST(LyingManifests, DoNotMakeFilesBesideTheMapAProblem) {
   map.folder.files["pack.zpk.part-77-0"] = Bytes(10);
   map.folder.files["notes.txt"] = Bytes(10);
   const Verdict verdict = verify_map(map.folder);
-  EXPECT_TRUE(verdict.whole()) << list(verdict.problems);
+  EXPECT_TRUE(verdict.whole()) << listed(verdict.problems);
   EXPECT_THAT(verdict.unnamed,
               testing::ElementsAre("c-0123456789abcdef.zpk", "pack.zpk.part-77-0"));
 }
@@ -226,7 +226,7 @@ TEST(LyingManifests, WithOneSignatureInTwoZonesAreFound) {
   one.x = 4;  // on the border: both could hold it
   one.y = 2;
   SmallMap map({one}, {one});
-  EXPECT_THAT(list(verify_map(map.folder).problems),
+  EXPECT_THAT(listed(verify_map(map.folder).problems),
               testing::HasSubstr("signature 1 is in zone a and in zone b"));
 }
 

@@ -10,7 +10,7 @@
 namespace zonepack {
 namespace {
 
-constexpr std::int64_t kUs = 1000, kMs = 1'000'000;
+constexpr std::int64_t kUs = 1000, kWireMs = 1'000'000;
 
 class List final : public CanFrameSource {
  public:
@@ -19,10 +19,10 @@ class List final : public CanFrameSource {
   static List ten(std::uint32_t id) {
     List list{};
     for (int i = 0; i < 10; ++i) {
-      CanFrame frame;
-      frame.id = id;
-      frame.stamp_ns = i * kMs;
-      list.frames_.push_back(frame);
+      CanFrame wire_frame;
+      wire_frame.id = id;
+      wire_frame.stamp_ns = i * kWireMs;
+      list.frames_.push_back(wire_frame);
     }
     return list;
   }
@@ -36,8 +36,8 @@ class List final : public CanFrameSource {
   std::size_t given_ = 0;
 };
 
-CanFrame frame(std::uint32_t id, std::int64_t stamp_ns, std::uint8_t len = 0,
-               bool extended = false) {
+CanFrame wire_frame(std::uint32_t id, std::int64_t stamp_ns, std::uint8_t len = 0,
+                    bool extended = false) {
   CanFrame made;
   made.id = id;
   made.stamp_ns = stamp_ns;
@@ -61,16 +61,16 @@ std::vector<CanFrame> heard(SimFault fault, std::uint64_t* dropped = nullptr) {
 }
 
 TEST(SimWire, TakesTheTimeOfTheBits) {
-  List node{frame(1, 0, 8), frame(2, 10 * kMs, 8, true)};
+  List node{wire_frame(1, 0, 8), wire_frame(2, 10 * kWireMs, 8, true)};
   SimWire wire({.bit_rate = 500'000}, {&node});
   const auto frames = all(wire);
-  EXPECT_EQ(frames[0].stamp_ns, 270 * kUs);             // 135 bits of 2 us
-  EXPECT_EQ(frames[1].stamp_ns, 10 * kMs + 320 * kUs);  // 160 bits
+  EXPECT_EQ(frames[0].stamp_ns, 270 * kUs);                 // 135 bits of 2 us
+  EXPECT_EQ(frames[1].stamp_ns, 10 * kWireMs + 320 * kUs);  // 160 bits
 }
 
 TEST(SimWire, GivesTheWireToTheLowestIdOfThoseThatAreReady) {
-  List fast{frame(0x300, 20 * kUs), frame(0x200, 30 * kUs)};
-  List slow{frame(0x100, 0), frame(0x700, 10 * kUs)};
+  List fast{wire_frame(0x300, 20 * kUs), wire_frame(0x200, 30 * kUs)};
+  List slow{wire_frame(0x100, 0), wire_frame(0x700, 10 * kUs)};
   // 110 us each: 0x100 goes alone, then 0x300 before 0x700; 0x200 is behind 0x300 in its node.
   SimWire wire({.bit_rate = 500'000}, {&slow, &fast});
   const auto frames = all(wire);
@@ -84,21 +84,21 @@ TEST(SimWire, GivesTheWireToTheLowestIdOfThoseThatAreReady) {
 }
 
 TEST(SimWire, EndsWithTheFirstOfItsNodes) {
-  List first{frame(1, 0)};
+  List first{wire_frame(1, 0)};
   List endless = List::ten(2);
   SimWire wire({.bit_rate = 500'000}, {&first, &endless});
   EXPECT_EQ(all(wire).size(), 1u);
 }
 
 TEST(SimWire, LetsAStandardIdWinOverAnExtendedOneThatBeginsAlike) {
-  List standard{frame(0x123, 0)};
-  List extended{frame(0x123u << 18u, 0, 0, true)};
+  List standard{wire_frame(0x123, 0)};
+  List extended{wire_frame(0x123u << 18u, 0, 0, true)};
   SimWire wire({.bit_rate = 500'000}, {&extended, &standard});
   EXPECT_FALSE(wire.next()->extended);
 }
 
 TEST(SimWire, SendsTheDataOfFdFramesAtTheirOwnRate) {
-  CanFrame fd = frame(1, 0, 64);
+  CanFrame fd = wire_frame(1, 0, 64);
   fd.fd = true;
   fd.flags = 1;
   List node{fd};
@@ -109,17 +109,17 @@ TEST(SimWire, SendsTheDataOfFdFramesAtTheirOwnRate) {
 
 TEST(SimWire, LosesFramesUnseenOrCounted) {
   std::uint64_t dropped = 0;
-  EXPECT_EQ(heard({SimFault::Kind::kDrop, 3 * kMs, 0, 2}, &dropped).size(), 8u);
+  EXPECT_EQ(heard({SimFault::Kind::kDrop, 3 * kWireMs, 0, 2}, &dropped).size(), 8u);
   EXPECT_EQ(dropped, 0u);
-  EXPECT_EQ(heard({SimFault::Kind::kDrop, 3 * kMs, 5 * kMs, 0}).size(), 5u);
-  const auto rest = heard({SimFault::Kind::kOverflow, 3 * kMs, 0, 4}, &dropped);
+  EXPECT_EQ(heard({SimFault::Kind::kDrop, 3 * kWireMs, 5 * kWireMs, 0}).size(), 5u);
+  const auto rest = heard({SimFault::Kind::kOverflow, 3 * kWireMs, 0, 4}, &dropped);
   EXPECT_EQ(rest.size(), 6u);
-  EXPECT_EQ(rest[3].stamp_ns, 7 * kMs);
+  EXPECT_EQ(rest[3].stamp_ns, 7 * kWireMs);
   EXPECT_EQ(dropped, 4u);
 }
 
 TEST(SimWire, IsSilentWhileOurControllerIsOffTheBusAndSaysSo) {
-  const auto frames = heard({SimFault::Kind::kBusOff, 3 * kMs, 4 * kMs, 0});
+  const auto frames = heard({SimFault::Kind::kBusOff, 3 * kWireMs, 4 * kWireMs, 0});
   // 0, 1, 2 ms; bus-off; restarted at 7 ms; 7, 8, 9 ms.
   ASSERT_EQ(frames.size(), 8u);
   CanBusStatus status;
@@ -127,32 +127,32 @@ TEST(SimWire, IsSilentWhileOurControllerIsOffTheBusAndSaysSo) {
   EXPECT_EQ(status.state, CanBusState::kOff);
   take_error_frame(frames[4], status);
   EXPECT_EQ(status.state, CanBusState::kActive);
-  EXPECT_EQ(frames[4].stamp_ns, 7 * kMs);
-  EXPECT_EQ(frames[5].stamp_ns, 7 * kMs);
+  EXPECT_EQ(frames[4].stamp_ns, 7 * kWireMs);
+  EXPECT_EQ(frames[5].stamp_ns, 7 * kWireMs);
 }
 
 TEST(SimWire, TellsOfAPassiveControllerWhileFramesCome) {
-  const auto frames = heard({SimFault::Kind::kPassive, 3 * kMs, 4 * kMs, 0});
+  const auto frames = heard({SimFault::Kind::kPassive, 3 * kWireMs, 4 * kWireMs, 0});
   EXPECT_EQ(frames.size(), 12u);
   EXPECT_TRUE(frames[3].error);
 }
 
 TEST(SimWire, HoldsFramesBackAndGivesThemAtOnce) {
-  const auto frames = heard({SimFault::Kind::kDelay, 3 * kMs, 4 * kMs, 0});
+  const auto frames = heard({SimFault::Kind::kDelay, 3 * kWireMs, 4 * kWireMs, 0});
   ASSERT_EQ(frames.size(), 10u);
-  for (std::size_t i = 3; i <= 7; ++i) EXPECT_EQ(frames[i].stamp_ns, 7 * kMs);
+  for (std::size_t i = 3; i <= 7; ++i) EXPECT_EQ(frames[i].stamp_ns, 7 * kWireMs);
 }
 
 TEST(SimWire, SendsAFrameTwiceThatNoiseDestroyed) {
-  List node{frame(1, 0)};
-  SimWire wire({.bit_rate = 500'000, .faults = {{SimFault::Kind::kNoise, 0, kMs, 0}}}, {&node});
+  List node{wire_frame(1, 0)};
+  SimWire wire({.bit_rate = 500'000, .faults = {{SimFault::Kind::kNoise, 0, kWireMs, 0}}}, {&node});
   EXPECT_EQ(wire.next()->stamp_ns, (55 + 31 + 55) * 2 * kUs);
 }
 
 TEST(SimWire, TakesTheInterfaceOfABusDown) {
   List node = List::ten(1);
-  SimWire wire({.faults = {{SimFault::Kind::kAbsent, 7 * kMs, kMs, 0},
-                           {SimFault::Kind::kDown, 2 * kMs, 3 * kMs, 0}}},
+  SimWire wire({.faults = {{SimFault::Kind::kAbsent, 7 * kWireMs, kWireMs, 0},
+                           {SimFault::Kind::kDown, 2 * kWireMs, 3 * kWireMs, 0}}},
                {&node});
   SimCanBus bus(&wire);
   bus.plan(wire.links());
@@ -163,11 +163,11 @@ TEST(SimWire, TakesTheInterfaceOfABusDown) {
     frames += bus.receive(into);
     return bus.status().link;
   };
-  EXPECT_EQ(at(kMs), CanLink::kUp);
-  EXPECT_EQ(at(2 * kMs), CanLink::kDown);
-  EXPECT_EQ(at(5 * kMs), CanLink::kUp);
-  EXPECT_EQ(at(7 * kMs), CanLink::kAbsent);
-  EXPECT_EQ(at(9 * kMs), CanLink::kUp);
+  EXPECT_EQ(at(kWireMs), CanLink::kUp);
+  EXPECT_EQ(at(2 * kWireMs), CanLink::kDown);
+  EXPECT_EQ(at(5 * kWireMs), CanLink::kUp);
+  EXPECT_EQ(at(7 * kWireMs), CanLink::kAbsent);
+  EXPECT_EQ(at(9 * kWireMs), CanLink::kUp);
   EXPECT_EQ(frames, 6u);  // 0, 1; 5, 6; 8, 9 ms
   EXPECT_EQ(bus.status().reconnects, 1u);
 }

@@ -11,9 +11,9 @@
 
 #include "platform/can_errors.hpp"
 #include "runtime/run/modelled_loader.hpp"
+#include "tests/support/allocation_count/allocation_count.hpp"
 #include "tests/support/rooms.hpp"
 #include "tests/support/sample_catalog.hpp"
-#include "tests/unit/runtime/control/allocation_count.hpp"
 
 namespace zonepack {
 namespace {

@@ -10,7 +10,7 @@
 namespace zonepack {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kLoadMs = 1'000'000;
 
 // A clock that sleeping turns on, and a wish to give up at a time or after a number of questions.
 class DrivenHost final : public LoadHost {
@@ -24,7 +24,7 @@ class DrivenHost final : public LoadHost {
 
   void loaded(const ChunkRef&) noexcept override { ++chunks; }
 
-  std::int64_t now = 1'000'000 * kMs;
+  std::int64_t now = 1'000'000 * kLoadMs;
   std::int64_t cancel_at = INT64_MAX;
   int cancel_after = INT32_MAX;
   int questions = 0;
@@ -87,7 +87,7 @@ TEST(RunLoad, GivesUpInTheMiddleOfAPause) {
   test_support::TwoZones map(8);
   DrivenHost host;
   RateLimit limit(1000);  // a window lasts a minute
-  host.cancel_at = host.now + 5 * kMs;
+  host.cancel_at = host.now + 5 * kLoadMs;
   ZoneLoad load = map.begin(0, ReadMode::kBuffered).value();
   EXPECT_EQ(run_load(load, limit, host).error().code, ErrorCode::kCancelled);
   EXPECT_EQ(host.now, host.cancel_at);

@@ -9,11 +9,11 @@
 namespace zonepack {
 namespace {
 
-constexpr ByteCount kSlot = 100;
+constexpr ByteCount kSlotSize = 100;
 
 // A budget of 1000 bytes: 200 fixed, 8 slots of 100.
 ResidencyLimits limits_of(std::uint64_t max_signatures = 0) {
-  return {1000, 200, kSlot, max_signatures, {4, 40}, 50};
+  return {1000, 200, kSlotSize, max_signatures, {4, 40}, 50};
 }
 
 class Memory : public testing::Test {
@@ -226,7 +226,7 @@ TEST_F(Memory, CountsSlotsOfABudgetWithoutOverflow) {
 
 // One victim of `slots` slots among `zones` known zones, evicted by one admission.
 std::uint64_t operations_of_one_eviction(std::size_t zones, std::uint32_t slots) {
-  Residency memory(zones, {ByteCount{slots} * kSlot, 0, kSlot, 0, {}, 0});
+  Residency memory(zones, {ByteCount{slots} * kSlotSize, 0, kSlotSize, 0, {}, 0});
   const auto ignore = [](const Eviction&) {};
   const ZoneId victim = static_cast<ZoneId>(zones - 1);
   EXPECT_TRUE(memory.admit(victim, {slots, slots}, Purpose::kApproach, ignore).ok());

@@ -8,11 +8,11 @@
 namespace zonepack {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kWatchMs = 1'000'000;
 
 CanFrame frame(std::int64_t t_ms, std::uint32_t id, std::initializer_list<int> bytes = {}) {
   CanFrame made;
-  made.stamp_ns = t_ms * kMs;
+  made.stamp_ns = t_ms * kWatchMs;
   made.id = id;
   for (const int byte : bytes) made.data[made.len++] = static_cast<std::uint8_t>(byte);
   return made;
@@ -123,17 +123,17 @@ TEST(CanOpenOdometry, GoesStaleWhenAHeartbeatIsLostAndBridgesThePauseAfterwards)
   drives.heartbeat(5);
   drives.at(10, 0);
   EXPECT_TRUE(drives.at(30, 20));
-  EXPECT_FALSE(drives.odometry->stale(200 * kMs));
+  EXPECT_FALSE(drives.odometry->stale(200 * kWatchMs));
   // Frames go on, heartbeats do not: from 306 ms on they are refused.
   EXPECT_TRUE(drives.at(300, 290));
   EXPECT_FALSE(drives.at(320, 310));
   EXPECT_FALSE(drives.at(640, 630));
-  EXPECT_TRUE(drives.odometry->stale(640 * kMs));
+  EXPECT_TRUE(drives.odometry->stale(640 * kWatchMs));
   EXPECT_EQ(drives.odometry->counters().canopen.heartbeats_lost, 2u);
   drives.heartbeat(650);
   const auto step = drives.at(660, 650);
   ASSERT_TRUE(step);
-  EXPECT_EQ(step->from_ns, 300 * kMs);
+  EXPECT_EQ(step->from_ns, 300 * kWatchMs);
   EXPECT_NEAR(step->motion.pose.x_m, 0.36, 1e-12);
 }
 

@@ -14,8 +14,8 @@ namespace {
 
 using Verdict = CorrectionVerdict;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 TEST(PoseFilter, KnowsNothingBeforeTheFirstFix) {
   Drive drive;
@@ -125,7 +125,7 @@ TEST(PoseFilter, RefusesWhatIsTooOldFromTheFutureOrNotANumber) {
   PoseCorrection fix = drive.fix(drive.now());
   fix.stamp_ns += 60 * kMs;
   EXPECT_EQ(drive.filter.correct(fix, drive.now()), Verdict::kFromFuture);
-  for (const double bad : {kNan, kInf, -kInf}) {
+  for (const double bad : {kNotANumber, kInfinite, -kInfinite}) {
     for (int field = 0; field < 6; ++field) {
       fix = drive.fix(drive.now());
       double* const places[] = {&fix.T_map_base.x_m, &fix.T_map_base.y_m, &fix.T_map_base.yaw_rad,
@@ -283,7 +283,7 @@ TEST(PoseFilter, AResetActsAtItsStampAndOdometrySinceGoesOn) {
   drive.steps(300);
   EXPECT_EQ(drive.filter.reset(drive.fix(contact_ns), drive.now()), Verdict::kTooOld);
   PoseCorrection wrong = drive.fix(drive.now());
-  wrong.sigma_x_m = kNan;
+  wrong.sigma_x_m = kNotANumber;
   EXPECT_EQ(drive.filter.reset(wrong, drive.now()), Verdict::kInvalid);
   EXPECT_LT(drive.error_m(), 1e-9);
 }

@@ -11,7 +11,7 @@
 namespace zonepack {
 namespace {
 
-using Verdict = CorrectionVerdict;
+using TimedVerdict = CorrectionVerdict;
 
 // What would be the result had the fix not been late: bit for bit.
 TEST(PoseFilterTime, ALateFixActsAtItsStamp) {
@@ -19,11 +19,11 @@ TEST(PoseFilterTime, ALateFixActsAtItsStamp) {
   in_time.trust();
   late.trust();
   const std::int64_t stamp = in_time.now();
-  EXPECT_EQ(in_time.correct(stamp, 0.05, -0.02, 0.01), Verdict::kUsed);
+  EXPECT_EQ(in_time.correct(stamp, 0.05, -0.02, 0.01), TimedVerdict::kUsed);
   in_time.steps(60);
   const PoseCorrection fix = late.fix(stamp, 0.05, -0.02, 0.01);
   late.steps(60);
-  EXPECT_EQ(late.filter.correct(fix, late.now()), Verdict::kUsed);
+  EXPECT_EQ(late.filter.correct(fix, late.now()), TimedVerdict::kUsed);
   const PoseEstimate a = in_time.filter.estimate(in_time.now());
   const PoseEstimate b = late.filter.estimate(late.now());
   EXPECT_EQ(a.T_map_base, b.T_map_base);
@@ -39,10 +39,10 @@ TEST(PoseFilterTime, FixesThatOvertakeEachOtherGiveTheSameResult) {
   sorted.steps(10);
   crossed.steps(10);
   sorted.correct_now(-0.03, 0.02, 0);
-  EXPECT_EQ(crossed.correct_now(-0.03, 0.02, 0), Verdict::kUsed);
+  EXPECT_EQ(crossed.correct_now(-0.03, 0.02, 0), TimedVerdict::kUsed);
   sorted.steps(10);
   crossed.steps(10);
-  EXPECT_EQ(crossed.correct(first, 0.04, 0, 0), Verdict::kUsed);
+  EXPECT_EQ(crossed.correct(first, 0.04, 0, 0), TimedVerdict::kUsed);
   EXPECT_EQ(sorted.filter.estimate(sorted.now()).T_map_base,
             crossed.filter.estimate(crossed.now()).T_map_base);
 }
@@ -56,7 +56,7 @@ TEST(PoseFilterTime, AFixBetweenTwoSamplesIsCarriedAlongTheArc) {
   const Pose2 before = drive.truth[drive.truth.size() - 2];
   const Pose2 middle = compose(before, along_arc(0.02, 0.05));
   const PoseCorrection fix{drive.now() - 10 * kMs, drive.now(), middle, 1e-6, 1e-6, 1e-6};
-  EXPECT_EQ(drive.filter.correct(fix, drive.now()), Verdict::kUsed);
+  EXPECT_EQ(drive.filter.correct(fix, drive.now()), TimedVerdict::kUsed);
   EXPECT_LT(drive.error_m(), 1e-9);
 }
 
@@ -72,7 +72,7 @@ TEST(PoseFilterTime, StaleOdometryGrowsUncertaintyAndLetsTheRobotBeFoundElsewher
   EXPECT_NEAR(position_sigma_m(estimate.covariance), 0.3 * std::sqrt(10.0), 0.02);
   PoseCorrection fix = drive.fix(drive.now(), 1.5, 0, 0);
   fix.stamp_ns = now - 100 * kMs;
-  EXPECT_EQ(drive.filter.correct(fix, now), Verdict::kUsed);
+  EXPECT_EQ(drive.filter.correct(fix, now), TimedVerdict::kUsed);
 }
 
 TEST(PoseFilterTime, ARobotThatMovedWhenOdometryWentMissingMayBeFarther) {
@@ -99,7 +99,7 @@ TEST(PoseFilterTime, TheMotionOfAPauseIsPutWhereItBelongs) {
       drive.truth.push_back(compose(drive.truth.back(), along_arc(0.02, 0.01)));
       drive.filter.drift_until(drive.now());
       if (with_fix && i % 50 == 0) {
-        EXPECT_EQ(drive.correct(drive.now() - 140 * kMs), Verdict::kUsed) << i;
+        EXPECT_EQ(drive.correct(drive.now() - 140 * kMs), TimedVerdict::kUsed) << i;
       }
     }
     pause.to_ns = drive.now();
@@ -147,7 +147,7 @@ TEST(PoseFilterTime, SurvivesAClockThatWasSetBack) {
   drive.filter.predict(increment);
   EXPECT_EQ(drive.filter.estimate(increment.to_ns).T_map_base, before);
   PoseCorrection fix{increment.to_ns, increment.to_ns, before, 0.03, 0.03, 0.01};
-  EXPECT_EQ(drive.filter.correct(fix, increment.to_ns), Verdict::kUsed);
+  EXPECT_EQ(drive.filter.correct(fix, increment.to_ns), TimedVerdict::kUsed);
 }
 
 TEST(PoseFilterTime, FastOdometrySharesEntriesOfTheHistory) {
@@ -172,8 +172,8 @@ TEST(PoseFilterTime, FastOdometrySharesEntriesOfTheHistory) {
     if (ms == 1007 || ms == 2013) filter.correct(fix(ms, 0.03), ms * kMs);
   }
   EXPECT_TRUE(filter.estimate(3000 * kMs).trusted);
-  EXPECT_EQ(filter.correct(fix(2100, 0.03), 3000 * kMs), Verdict::kUsed);
-  EXPECT_EQ(filter.correct(fix(1500, 0.03), 3000 * kMs), Verdict::kTooOld);
+  EXPECT_EQ(filter.correct(fix(2100, 0.03), 3000 * kMs), TimedVerdict::kUsed);
+  EXPECT_EQ(filter.correct(fix(1500, 0.03), 3000 * kMs), TimedVerdict::kTooOld);
   EXPECT_NEAR(filter.estimate(3000 * kMs).T_map_base.x_m, pose.x_m, 1e-6);
 }
 

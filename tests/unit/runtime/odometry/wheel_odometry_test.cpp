@@ -12,7 +12,7 @@
 namespace zonepack {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kWheelMs = 1'000'000;
 
 CanSignal big(std::uint32_t id, std::uint16_t start, std::uint16_t length) {
   CanSignal signal;
@@ -40,7 +40,7 @@ void put(CanFrame& frame, std::int64_t value, int bytes) {
 CanFrame positions(std::int64_t t_ms, std::int64_t left_mm, std::int64_t right_mm) {
   CanFrame frame;
   frame.id = 0x311;
-  frame.stamp_ns = t_ms * kMs;
+  frame.stamp_ns = t_ms * kWheelMs;
   put(frame, left_mm, 4);
   put(frame, right_mm, 4);
   return frame;
@@ -51,9 +51,9 @@ TEST(WheelOdometry, TheFirstSampleOnlySetsTheStart) {
   EXPECT_FALSE(odometry.newest_ns().has_value());
   EXPECT_TRUE(odometry.stale(0));
   EXPECT_FALSE(odometry.take(positions(1000, 123456, -99)).has_value());
-  EXPECT_EQ(odometry.newest_ns(), 1000 * kMs);
-  EXPECT_FALSE(odometry.stale(1299 * kMs));
-  EXPECT_TRUE(odometry.stale(1301 * kMs));
+  EXPECT_EQ(odometry.newest_ns(), 1000 * kWheelMs);
+  EXPECT_FALSE(odometry.stale(1299 * kWheelMs));
+  EXPECT_TRUE(odometry.stale(1301 * kWheelMs));
 }
 
 TEST(WheelOdometry, WheelPositionsBecomeAnArc) {
@@ -63,7 +63,7 @@ TEST(WheelOdometry, WheelPositionsBecomeAnArc) {
   const auto step = odometry.take(positions(20, 1020, 5040));
   ASSERT_TRUE(step.has_value());
   EXPECT_EQ(step->from_ns, 0);
-  EXPECT_EQ(step->to_ns, 20 * kMs);
+  EXPECT_EQ(step->to_ns, 20 * kWheelMs);
   const Pose2 arc = along_arc(0.03, 0.05);
   EXPECT_DOUBLE_EQ(step->motion.pose.x_m, arc.x_m);
   EXPECT_DOUBLE_EQ(step->motion.pose.y_m, arc.y_m);
@@ -143,7 +143,7 @@ TEST(WheelOdometry, FramesThatWereOvertakenAreRefusedHoweverManyComeInARow) {
   for (int t : {20, 40, 60, 80}) EXPECT_FALSE(odometry.take(positions(t, t, t)).has_value());
   const auto step = odometry.take(positions(120, 120, 120));
   ASSERT_TRUE(step.has_value());
-  EXPECT_EQ(step->from_ns, 100 * kMs);
+  EXPECT_EQ(step->from_ns, 100 * kWheelMs);
   EXPECT_EQ(odometry.counters().rejected, 4u);
   EXPECT_EQ(odometry.counters().rebased, 0u);
 }
@@ -155,7 +155,7 @@ TEST(WheelOdometry, ASinglePositionOutOfPlaceIsRefusedWithoutLosingMotion) {
   EXPECT_FALSE(odometry.take(positions(40, 5000, 40)).has_value());
   const auto step = odometry.take(positions(60, 60, 60));
   ASSERT_TRUE(step.has_value());
-  EXPECT_EQ(step->from_ns, 20 * kMs);
+  EXPECT_EQ(step->from_ns, 20 * kWheelMs);
   EXPECT_NEAR(step->motion.pose.x_m, 0.04, 1e-12);
   EXPECT_EQ(odometry.counters().jumps, 1u);
   EXPECT_EQ(odometry.counters().rejected, 1u);
@@ -168,8 +168,8 @@ TEST(WheelOdometry, AfterACounterResetItGoesOnFromThereAndSaysThatMotionIsMissin
   EXPECT_FALSE(odometry.take(positions(220, 0, 0)).has_value());
   const auto step = odometry.take(positions(240, 20, 20));
   ASSERT_TRUE(step.has_value());
-  EXPECT_EQ(step->from_ns, 200 * kMs);
-  EXPECT_EQ(step->to_ns, 240 * kMs);
+  EXPECT_EQ(step->from_ns, 200 * kWheelMs);
+  EXPECT_EQ(step->to_ns, 240 * kWheelMs);
   EXPECT_NEAR(step->motion.pose.x_m, 0.04, 1e-12);  // 20 mm seen, 20 mm taken to be as before
   EXPECT_GT(std::sqrt(step->motion.covariance.xx), 0.009);  // 0.5 m/s for 20 ms
   EXPECT_EQ(odometry.counters().rebased, 1u);
@@ -197,7 +197,7 @@ TEST(WheelOdometry, GoesOnWhenTheClockWasSetBack) {
   EXPECT_FALSE(odometry.take(positions(5'000, 40, 40)).has_value());
   const auto step = odometry.take(positions(5'020, 60, 60));
   ASSERT_TRUE(step.has_value());
-  EXPECT_EQ(step->to_ns, 5'020 * kMs);
+  EXPECT_EQ(step->to_ns, 5'020 * kWheelMs);
   EXPECT_TRUE(odometry.take(positions(5'040, 80, 80)).has_value());
   EXPECT_EQ(odometry.counters().rebased, 1u);
 }
@@ -209,7 +209,7 @@ TEST(WheelOdometry, WheelsInFramesOfTheirOwnArePaired) {
   const auto one = [](std::uint32_t id, std::int64_t t_ms, std::int64_t mm) {
     CanFrame frame;
     frame.id = id;
-    frame.stamp_ns = t_ms * kMs;
+    frame.stamp_ns = t_ms * kWheelMs;
     put(frame, mm, 4);
     return frame;
   };
@@ -218,7 +218,7 @@ TEST(WheelOdometry, WheelsInFramesOfTheirOwnArePaired) {
   EXPECT_FALSE(odometry.take(one(0x311, 20, 20)));
   const auto step = odometry.take(one(0x312, 21, 20));
   ASSERT_TRUE(step.has_value());
-  EXPECT_EQ(step->to_ns, 21 * kMs);
+  EXPECT_EQ(step->to_ns, 21 * kWheelMs);
   EXPECT_NEAR(step->motion.pose.x_m, 0.02, 1e-12);
   // The right wheel is missing once: the next pair bridges it.
   EXPECT_FALSE(odometry.take(one(0x311, 40, 40)));
@@ -245,7 +245,7 @@ TEST(WheelOdometry, WheelSpeedsAndTwistsAreIntegrated) {
   const auto frame = [](std::int64_t t_ms, int speed, int rate) {
     CanFrame made;
     made.id = 0x221;
-    made.stamp_ns = t_ms * kMs;
+    made.stamp_ns = t_ms * kWheelMs;
     put(made, speed, 2);
     put(made, rate, 2);
     return made;

@@ -8,7 +8,7 @@
 
 #include "runtime/recording/byte_ring.hpp"
 #include "runtime/recording/cycle_block.hpp"
-#include "tests/unit/runtime/control/allocation_count.hpp"
+#include "tests/support/allocation_count/allocation_count.hpp"
 
 namespace zonepack {
 namespace {

@@ -13,7 +13,7 @@
 namespace zonepack::report {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kFloorPlanNaN = std::numeric_limits<double>::quiet_NaN();
 
 Polygon box(double x0, double y0, double x1, double y1) {
   return {{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}, {}};
@@ -137,10 +137,10 @@ TEST(FloorPlan, DrawsAMapOfOneZoneAndOfNone) {
 
 TEST(FloorPlan, LeavesOutWhatIsNotFinite) {
   FloorPlan plan = two_rooms();
-  plan.route.insert(plan.route.begin(), {{kNaN, 1}, hue(3)});
-  plan.signatures.push_back({kNaN, kNaN});
-  plan.true_route.push_back({1, kNaN});
-  plan.zones.push_back({"N", "", "", {{{kNaN, 0}, {1, kNaN}}, {}}, kWhite});
+  plan.route.insert(plan.route.begin(), {{kFloorPlanNaN, 1}, hue(3)});
+  plan.signatures.push_back({kFloorPlanNaN, kFloorPlanNaN});
+  plan.true_route.push_back({1, kFloorPlanNaN});
+  plan.zones.push_back({"N", "", "", {{{kFloorPlanNaN, 0}, {1, kFloorPlanNaN}}, {}}, kWhite});
   const std::string text = draw_floor_plan(plan).inline_text();
   EXPECT_EQ(XmlCheck::fault_of(text), "");
   EXPECT_EQ(text.find("nan"), std::string::npos);

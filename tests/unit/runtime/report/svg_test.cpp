@@ -10,7 +10,7 @@
 namespace zonepack::report {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSvgNaN = std::numeric_limits<double>::quiet_NaN();
 
 Svg everything() {
   Svg svg(200, 100);
@@ -61,13 +61,13 @@ TEST(Svg, HolesAreCutOutByTheEvenOddRule) {
 
 TEST(Svg, LeavesOutPointsThatAreNotFinite) {
   Svg svg(10, 10);
-  svg.line({kNaN, 0}, {1, 1}, {.stroke = kInk});
-  svg.circle({0, kNaN}, 1, {.fill = kInk});
-  svg.circle({0, 0}, kNaN, {.fill = kInk});
-  svg.rect({0, 0}, kNaN, 1, {.fill = kInk});
-  svg.text({kNaN, 0}, "x", {});
+  svg.line({kSvgNaN, 0}, {1, 1}, {.stroke = kInk});
+  svg.circle({0, kSvgNaN}, 1, {.fill = kInk});
+  svg.circle({0, 0}, kSvgNaN, {.fill = kInk});
+  svg.rect({0, 0}, kSvgNaN, 1, {.fill = kInk});
+  svg.text({kSvgNaN, 0}, "x", {});
   EXPECT_EQ(svg.inline_text(), Svg(10, 10).inline_text());
-  const std::vector<Px> points = {{0, 0}, {kNaN, 1}, {2, 2}};
+  const std::vector<Px> points = {{0, 0}, {kSvgNaN, 1}, {2, 2}};
   svg.polyline(points, {.stroke = kInk});
   EXPECT_EQ(count_of(svg.inline_text(), "points=\"0,0 2,2\""), 1u);
 }

@@ -10,7 +10,7 @@ namespace zonepack::report {
 namespace {
 
 using Labels = std::vector<std::string>;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kTicksNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Ticks, AreRoundNumbers) {
   // 110 / 10 = 11, and the next of 1, 2, 5 times a power of ten is 20.
@@ -34,8 +34,8 @@ TEST(Ticks, OfBytesAreRoundInTheirUnit) {
 TEST(Ticks, SurviveEmptyAndHugeAndMeaninglessRanges) {
   for (const auto& [low, high] : {std::pair{0.0, 0.0},
                                   {5.0, 5.0},
-                                  {kNaN, 1.0},
-                                  {0.0, kNaN},
+                                  {kTicksNaN, 1.0},
+                                  {0.0, kTicksNaN},
                                   {2.0, 1.0},
                                   {-1.7e308, 1.7e308},
                                   {0.0, std::numeric_limits<double>::infinity()}}) {
@@ -65,7 +65,7 @@ TEST(Ticks, AnAxisEndsAtATickAboveItsData) {
   EXPECT_EQ(round_up_to_tick(1071, 6), 1200);  // 1071 / 6 = 178.5: steps of 200
   EXPECT_EQ(round_up_to_tick(100, 5), 100);
   EXPECT_EQ(round_up_to_tick(0, 5), 1);
-  EXPECT_EQ(round_up_to_tick(kNaN, 5), 1);
+  EXPECT_EQ(round_up_to_tick(kTicksNaN, 5), 1);
 }
 
 }  // namespace

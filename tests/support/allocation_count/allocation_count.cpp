@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/unit/runtime/control/allocation_count.hpp"
+#include "tests/support/allocation_count/allocation_count.hpp"
 
 #include <cstdlib>
 #include <new>
