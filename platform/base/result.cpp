@@ -37,6 +37,8 @@ const char* to_string(ErrorCode code) noexcept {
       return "no room";
     case ErrorCode::kCancelled:
       return "cancelled";
+    case ErrorCode::kUsage:
+      return "wrong usage";
   }
   return "unknown error";
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -9,8 +10,8 @@
 
 namespace zonepack {
 
-// Why a call failed. Plain values, so that the control thread can return them; the edge (main, log)
-// turns them into a message with the file, zone or key that it knows.
+// Why a call failed. Plain values, so that the control thread can return them; above it they become
+// a Failure (failure.hpp) with the file, zone or key that is known there.
 enum class ErrorCode : std::uint16_t {
   kOk = 0,
   kNotFound,     // a file, zone or key that does not exist
@@ -28,6 +29,7 @@ enum class ErrorCode : std::uint16_t {
   kBusy,            // cannot be done now; try again later
   kNoRoom,          // fits only if something protected were evicted
   kCancelled,       // given up on request
+  kUsage,           // the caller asked for what cannot be meant; a program exits with 2
 };
 
 struct Error {
@@ -40,16 +42,20 @@ struct Error {
 const char* to_string(ErrorCode code) noexcept;
 
 // A value or the reason why there is none.
-template <typename T>
+template <typename T, typename E = Error>
 class [[nodiscard]] Result {
  public:
   Result(T value) : value_(std::move(value)) {}  // NOLINT: implicit by intent
-  Result(Error error) : error_(error) { ZP_REQUIRE(error.code != ErrorCode::kOk); }  // NOLINT
-  Result(ErrorCode code, std::int64_t detail = 0) : Result(Error{code, detail}) {}
+  Result(E error) : error_(std::move(error)) {   // NOLINT: implicit by intent
+    ZP_REQUIRE(error_.code != ErrorCode::kOk);
+  }
+  Result(ErrorCode code, std::int64_t detail = 0) requires std::same_as<E, Error>
+      : Result(Error{code, detail}) {}
 
   bool ok() const noexcept { return value_.has_value(); }
   explicit operator bool() const noexcept { return ok(); }
-  Error error() const noexcept { return error_; }
+  const E& error() const& noexcept { return error_; }
+  E error() && noexcept { return std::move(error_); }
   T& value() & noexcept {
     ZP_REQUIRE(ok());
     return *value_;
@@ -64,28 +70,31 @@ class [[nodiscard]] Result {
   }
   T& operator*() & noexcept { return value(); }
   const T& operator*() const& noexcept { return value(); }
+  T&& operator*() && noexcept { return std::move(*this).value(); }
   T* operator->() noexcept { return &value(); }
   const T* operator->() const noexcept { return &value(); }
 
  private:
   std::optional<T> value_;
-  Error error_;
+  E error_;
 };
 
 // Success or a reason.
-template <>
-class [[nodiscard]] Result<void> {
+template <typename E>
+class [[nodiscard]] Result<void, E> {
  public:
   Result() = default;
-  Result(Error error) : error_(error) {}  // NOLINT: implicit by intent
-  Result(ErrorCode code, std::int64_t detail = 0) : error_{code, detail} {}
+  Result(E error) : error_(std::move(error)) {}  // NOLINT: implicit by intent
+  Result(ErrorCode code, std::int64_t detail = 0) requires std::same_as<E, Error>
+      : error_{code, detail} {}
 
   bool ok() const noexcept { return error_.code == ErrorCode::kOk; }
   explicit operator bool() const noexcept { return ok(); }
-  Error error() const noexcept { return error_; }
+  const E& error() const& noexcept { return error_; }
+  E error() && noexcept { return std::move(error_); }
 
  private:
-  Error error_;
+  E error_;
 };
 
 }  // namespace zonepack

@@ -130,10 +130,10 @@ std::int64_t SimGpio::now_ns() const {
 
 void SimGpio::drive(const std::string& label, unsigned number, bool high) {
   const Locked guard(mutex_);
-  Line& driven = line(label, number);
-  if (driven.high == high) return;
-  driven.high = high;
-  if (driven.watched && driven.edges.size() < kQueue) driven.edges.push_back({now_ns_, high});
+  Line& model = line(label, number);
+  if (model.high == high) return;
+  model.high = high;
+  if (model.watched && model.edges.size() < kQueue) model.edges.push_back({now_ns_, high});
 }
 
 bool SimGpio::is_high(const std::string& label, unsigned number) const {

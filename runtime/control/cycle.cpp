@@ -28,8 +28,8 @@ Cycle::Cycle(const CycleConfig& settings, const CycleParts& parts)
       filter_(settings.filter),
       tracker_(parts.graph, settings.tracker),
       preload_(parts.graph, parts.load_s, settings.preload),
-      keeper_(parts.memory, parts.loader, events_, parts.needs, parts.pinned, parts.directory,
-              settings.keeper),
+      zone_keeper_(parts.memory, parts.loader, events_, parts.needs, parts.pinned, parts.directory,
+                   settings.keeper),
       markers_(parts.graph, settings.markers),
       dock_(settings.dock),
       tracker_settings_(settings.tracker) {
@@ -72,7 +72,7 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
   for (const LineEdge& edge : input.edges) take(edge, now_ns);
   if (state_.pose.valid && !had_pose) emit(EventKind::kPoseInitialised);
 
-  keeper_.collect(now_ns, input.loads);
+  zone_keeper_.collect(now_ns, input.loads);
   ZP_REQUIRE(input.commands.size() <= kMostCommands);
   reply_count_ = 0;
   for (const Command& command : input.commands) {
@@ -81,11 +81,11 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
   }
   follow_zones(zone_before);
   const Wanted wanted = list_wanted();
-  keeper_.keep(now_ns, {wanted.zones.data(), wanted.count}, wanted.urgent);
+  zone_keeper_.keep(now_ns, {wanted.zones.data(), wanted.count}, wanted.urgent);
 
   state_.zone_resident = state_.zone != kNoZone && memory_.resident(state_.zone);
   state_.map_ready = state_.pose.trusted && state_.zone_resident;
-  state_.blocked = keeper_.blocked();
+  state_.blocked = zone_keeper_.blocked();
   return state_;
 }
 
@@ -173,13 +173,13 @@ CommandReply Cycle::obey(const Command& command, std::int64_t now_ns) noexcept {
     case Command::Kind::kPin:
       if (!exists(command.zone)) {
         refuse({ErrorCode::kNotFound});
-      } else if (const auto pinned = keeper_.pin(command.zone); !pinned) {
+      } else if (const auto pinned = zone_keeper_.pin(command.zone); !pinned) {
         refuse(pinned.error());
       }
       break;
     case Command::Kind::kUnpin:
       if (exists(command.zone)) {
-        keeper_.unpin(command.zone);
+        zone_keeper_.unpin(command.zone);
       } else {
         refuse({ErrorCode::kNotFound});
       }
@@ -201,7 +201,7 @@ CommandReply Cycle::obey(const Command& command, std::int64_t now_ns) noexcept {
       if (exists(command.lease.zone)) memory_.release(command.lease);
       break;
     case Command::Kind::kMapFreed:
-      break;  // MapRun's
+      break;  // MapSwitcher's
     case Command::Kind::kRouteHint:
       route_length_ = 0;
       for (std::size_t i = 0; i < command.route_length && i < route_.size(); ++i) {

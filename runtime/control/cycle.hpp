@@ -12,7 +12,7 @@
 #include "runtime/control/command.hpp"
 #include "runtime/control/event.hpp"
 #include "runtime/control/line_edge.hpp"
-#include "runtime/control/map_keeper.hpp"
+#include "runtime/control/zone_keeper.hpp"
 #include "runtime/control/zone_loader.hpp"
 #include "runtime/memory/residency.hpp"
 #include "runtime/odometry/pose.hpp"
@@ -30,7 +30,7 @@ struct CycleConfig {
   PoseFilterSettings filter;
   TrackerSettings tracker;
   PreloadSettings preload;
-  MapKeeperSettings keeper;
+  ZoneKeeperSettings keeper;
   struct Dock {
     Pose2 T_map_base;
     double sigma_m = 0, sigma_rad = 0;
@@ -66,7 +66,7 @@ struct CycleInput {
   std::span<const PoseCorrection> corrections{};
   std::span<const LoadResult> loads{};  // polled from the loader
   std::span<const Command> commands{};  // at most Cycle::kMostCommands
-  MapOffer offer{};                     // MapRun's
+  MapOffer offer{};                     // MapSwitcher's
   std::span<const LineEdge> edges{};
 };
 
@@ -120,7 +120,7 @@ class Cycle {
   // the first run().
   void go_on_from(const Cycle& other) noexcept;
 
-  MapKeeper& keeper() noexcept { return keeper_; }
+  ZoneKeeper& keeper() noexcept { return zone_keeper_; }
 
   // Records an event that is not the cycle's own, at its time.
   void tell(EventKind kind, const char* reason = nullptr) noexcept { emit(kind, kNoZone, reason); }
@@ -139,7 +139,7 @@ class Cycle {
   CommandReply obey(const Command& command, std::int64_t now_ns) noexcept;
   void follow_zones(ZoneId before) noexcept;
   struct Wanted {
-    std::array<ZoneId, MapKeeper::kMaxWanted> zones{};
+    std::array<ZoneId, ZoneKeeper::kMaxWanted> zones{};
     std::size_t count = 0;
     std::size_t urgent = 0;
     void add(ZoneId zone) noexcept;
@@ -156,7 +156,7 @@ class Cycle {
   PoseFilter filter_;
   ZoneTracker tracker_;
   Preload preload_;
-  MapKeeper keeper_;
+  ZoneKeeper zone_keeper_;
   ZoneMarkers markers_;
   std::optional<CycleConfig::Dock> dock_;
   TrackerSettings tracker_settings_;

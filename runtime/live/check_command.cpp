@@ -6,6 +6,7 @@
 #include <iostream>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "platform/board.hpp"
 #include "platform/realtime.hpp"
 #include "platform/shared_memory.hpp"
@@ -13,7 +14,7 @@
 #include "runtime/live/live_source.hpp"
 #include "runtime/map/loader.hpp"
 #include "runtime/memory/shared_layout.hpp"
-#include "runtime/run/driven_map.hpp"
+#include "runtime/run/map_model.hpp"
 
 namespace zonepack {
 namespace {
@@ -25,11 +26,6 @@ struct Row {
   Kind kind = Kind::kGood;
   std::string name, found, mend;
 };
-
-std::string reason_text(const Error& error) {
-  return error.code == ErrorCode::kIo ? std::strerror(static_cast<int>(error.detail))
-                                      : to_string(error.code);
-}
 
 class Check {
  public:
@@ -73,7 +69,7 @@ class Check {
 
   bool budget() {
     std::string fault;
-    map_ = DrivenMap::make(inputs_.catalog, map_terms(arguments_, inputs_.settings), fault);
+    map_ = MapModel::make(inputs_.catalog, map_terms(arguments_, inputs_.settings), fault);
     if (!map_) {
       refuse("budget", fault);
       return false;
@@ -212,7 +208,7 @@ class Check {
 
   const RunArguments& arguments_;
   RunInputs inputs_;
-  std::unique_ptr<DrivenMap> map_;
+  std::unique_ptr<MapModel> map_;
   std::vector<Row> rows_;
 };
 

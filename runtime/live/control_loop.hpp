@@ -11,7 +11,7 @@
 #include "platform/seqlock.hpp"
 #include "platform/spsc_queue.hpp"
 #include "runtime/control/input_sink.hpp"
-#include "runtime/control/map_run.hpp"
+#include "runtime/control/map_switcher.hpp"
 #include "runtime/live/histogram.hpp"
 #include "runtime/live/live_notes.hpp"
 #include "runtime/run/live_status.hpp"
@@ -47,7 +47,7 @@ struct ControlSettings {
 struct ControlPorts {
   RunClock& clock;
   CanBus& bus;
-  MapRun& maps;
+  MapSwitcher& maps;
   ZoneLoader& loader;
   EventFanOut& notes;
   OverloadCounters& overload;

@@ -143,7 +143,6 @@ LoadResult LiveLoader::fill(const Message& message) {
   result.error = read_zone(message, result.slots);
   if (result.error.code != ErrorCode::kOk) {
     pool_.give_back(result.slots);
-    if (result.error.code != ErrorCode::kCancelled) ++failed_loads_;
   } else {
     last_load_.store({request.zone, monotonic_ns()});
   }

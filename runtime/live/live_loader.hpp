@@ -55,8 +55,7 @@ class LiveLoader final : public ZoneLoader {
   };
   // The load that was completed last. Any thread.
   Loaded last_load() const noexcept { return last_load_.load(); }
-  // The zone whose pack could not be loaded last, and why; any thread.
-  std::uint64_t failed_loads() const noexcept { return failed_loads_.load(); }
+  // Whether SCHED_FIFO was granted. Any thread.
   bool is_realtime() const noexcept { return thread_.is_realtime(); }
 
  private:
@@ -84,7 +83,6 @@ class LiveLoader final : public ZoneLoader {
   std::atomic<bool> stop_{false};
   std::atomic<std::uint64_t> bytes_loaded_{0};
   Seqlock<Loaded> last_load_;
-  std::atomic<std::uint64_t> failed_loads_{0};
   std::vector<SlotIndex> slots_;
   std::vector<std::byte*> places_;
   std::vector<std::byte> read_buffer_;

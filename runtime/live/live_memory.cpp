@@ -5,16 +5,9 @@
 #include <cstring>
 #include <filesystem>
 
+#include "platform/base/failure.hpp"
+
 namespace zonepack {
-namespace {
-
-std::string reason_of(const Error& error) {
-  return error.code == ErrorCode::kIo ? std::strerror(static_cast<int>(error.detail))
-                                      : to_string(error.code);
-}
-
-}  // namespace
-
 std::string socket_path(const ServeSettings& settings) {
   const char* const given = std::getenv("ZONED_SOCKET");
   return given != nullptr ? given : settings.socket;
@@ -32,7 +25,7 @@ bool LiveMemory::share(const Choice& choice, std::string& fault) {
   if (!arena) {
     fault = arena.error().code == ErrorCode::kBusy
                 ? ArenaMemory::why_busy(source)
-                : "serve.socket: " + source.lock_path + ": " + reason_of(arena.error()) +
+                : "serve.socket: " + source.lock_path + ": " + reason_text(arena.error()) +
                       "; its folder must exist and be writable";
     return false;
   }
@@ -40,7 +33,7 @@ bool LiveMemory::share(const Choice& choice, std::string& fault) {
   auto lock = arena->reader_lock();
   if (!reader || !lock) {
     fault = "the memory cannot be opened for readers: " +
-            reason_of(reader ? lock.error() : reader.error()) + "; /proc must be mounted";
+            reason_text(reader ? lock.error() : reader.error()) + "; /proc must be mounted";
     return false;
   }
   arena_.emplace(std::move(*arena));
@@ -59,7 +52,7 @@ std::unique_ptr<LiveMemory> LiveMemory::open(const Choice& choice, std::string& 
   if (!made->arena_) {
     auto own = SharedMemory::create("zoned-zones", shared_map_bytes(choice.zones, choice.slots));
     if (!own) {
-      fault = "memory.budget: the memory cannot be had: " + reason_of(own.error()) +
+      fault = "memory.budget: the memory cannot be had: " + reason_text(own.error()) +
               "; allow less, or end other programs";
       return nullptr;
     }
@@ -68,7 +61,7 @@ std::unique_ptr<LiveMemory> LiveMemory::open(const Choice& choice, std::string& 
   auto map = SharedMap::lay_out(made->arena_ ? made->arena_->bytes() : made->own_->bytes(),
                                 choice.zones, choice.slots);
   if (!map) {
-    fault = "the memory of an earlier zoned cannot be taken over: " + reason_of(map.error()) +
+    fault = "the memory of an earlier zoned cannot be taken over: " + reason_text(map.error()) +
             "; start zoned once more";
     return nullptr;
   }

@@ -7,11 +7,11 @@
 #include "platform/spsc_queue.hpp"
 #include "runtime/control/event.hpp"
 #include "runtime/run/live_status.hpp"
-#include "runtime/run/run_recorder.hpp"
+#include "runtime/run/run_statistics.hpp"
 
 namespace zonepack {
 
-// What the control thread tells the scribe: events, then what the cycle did.
+// What the control thread tells the log thread: events, then what the cycle did.
 struct LiveNote {
   enum class Kind : std::uint8_t { kEvent, kCycle };
   Kind kind = Kind::kEvent;

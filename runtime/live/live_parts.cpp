@@ -21,8 +21,8 @@ LiveFigures::Timing timing_of(const Histogram& histogram) {
 
 void LiveRun::Parts::tell(const std::string& message) { std::cerr << "zoned: " + message + "\n"; }
 
-void LiveRun::Parts::account_for(const RunMap& next) {
-  const DrivenMap& map = next.driven();
+void LiveRun::Parts::account_for(const MapVersion& next) {
+  const MapModel& map = next.model();
   recording.change_map(next.number(), map.needs.size());
   recorder.change_map(map.graph, map.needs, map.limits);
 }
@@ -36,9 +36,9 @@ bool LiveRun::Parts::open_source(std::string& fault) {
                              .allow_degraded = options.allow_degraded},
                             fault);
   if (source == nullptr || options.record_can.empty()) return source != nullptr;
-  can_recorder = std::make_unique<CanRecorder>(source->bus(), source->interface(),
-                                               source->clock().offset_ns());
-  scribe.add_task([this] { can_recorder->write(); });
+  can_recorder =
+      std::make_unique<CanCapture>(source->bus(), source->interface(), source->clock().offset_ns());
+  log_thread.add_task([this] { can_recorder->write(); });
   const auto opened = can_recorder->open(options.record_can);
   if (!opened) fault = unwritten_recording(opened.error());
   return opened.ok();
@@ -85,10 +85,10 @@ void LiveRun::Parts::restore_state() {
     return StateGlimpse{now.now_ns, now.state.pose, now.state.map, now.state.zone};
   };
   const auto place = [this](const StateGlimpse& glimpse, SavedState& state) {
-    const auto map = shelf.find(glimpse.map);
+    const auto map = registry.find(glimpse.map);
     if (map == nullptr) return false;
     state.map_version = map->catalog().version;
-    state.zone = glimpse.zone == kNoZone ? std::string() : map->driven().graph.name(glimpse.zone);
+    state.zone = glimpse.zone == kNoZone ? std::string() : map->model().graph.name(glimpse.zone);
     return true;
   };
   state_saver.emplace(*state_store, next, look, place, tell);
@@ -106,12 +106,12 @@ void LiveRun::Parts::begin_at(const RecordedStart& start) {
 bool LiveRun::Parts::open_recorder(std::string& fault) {
   std::vector<std::string> warnings;
   const bool opened =
-      recording.open(options.recorder, options.preface, first()->driven().needs.size(),
+      recording.open(options.recorder, options.preface, first()->model().needs.size(),
                      inputs.settings.cycle.most_frames, fault, warnings);
   for (const std::string& warning : warnings) tell(warning);
   options.preface = {};
   if (!opened || recording.tap() == nullptr) return opened;
-  scribe.add_task([this] { recording.drain(); });
+  log_thread.add_task([this] { recording.drain(); });
   return true;
 }
 
@@ -160,7 +160,8 @@ bool LiveRun::Parts::start_threads(std::string& fault) {
             "LimitMEMLOCK of its unit), or go on without by --allow-degraded";
     return false;
   };
-  if (const auto started = scribe.start(); !started) return refused("scribe", started.error());
+  if (const auto started = log_thread.start(); !started)
+    return refused("log thread", started.error());
   if (state_saver) {
     if (const auto started = state_saver->start(); !started) {
       return refused("state", started.error());
@@ -177,14 +178,14 @@ bool LiveRun::Parts::start_threads(std::string& fault) {
   auto started = Thread::start(for_control, options.allow_degraded, [this] { control(); });
   if (!started) return refused("realtime.priority", started.error());
   control_thread = std::move(started).value();
-  if (const auto driven = lines.start([this] { return status.load(); },
+  if (const auto driving = lines.start([this] { return status.load(); },
                                       [this] {
                                         const auto load = loader.last_load();
                                         return LoadEnd{load.zone, load.ns};
                                       },
                                       control_settings().wall_period_ns);
-      !driven) {
-    return refused("gpio", driven.error());
+      !driving) {
+    return refused("gpio", driving.error());
   }
   if (const auto serving = service.start(notifier, [this] { return loop->cycles(); }); !serving) {
     return refused("serve", serving.error());
@@ -205,7 +206,7 @@ RunSummary LiveRun::Parts::summary() const {
   figures.corrections_rejected = last.filter.rejected;
   LiveFigures live;
   live.process_peak_bytes = process_peak_bytes();
-  const DrivenMap& map = follower.map().driven();
+  const MapModel& map = follower.map().model();
   const ByteCount mapped = map.limits.fixed + map.slots * map.limits.slot_bytes;
   live.overhead_bytes = live.process_peak_bytes - std::min(mapped, live.process_peak_bytes);
   live.minor_faults = last.minor_faults;

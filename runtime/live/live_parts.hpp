@@ -11,19 +11,19 @@
 #include "platform/realtime.hpp"
 #include "platform/seqlock.hpp"
 #include "platform/spsc_queue.hpp"
-#include "runtime/live/can_recorder.hpp"
+#include "runtime/live/can_capture.hpp"
 #include "runtime/live/control_loop.hpp"
-#include "runtime/live/event_teller.hpp"
+#include "runtime/live/event_messages.hpp"
 #include "runtime/live/live_lines.hpp"
 #include "runtime/live/live_loader.hpp"
 #include "runtime/live/live_run.hpp"
 #include "runtime/live/live_source.hpp"
+#include "runtime/live/log_thread.hpp"
 #include "runtime/live/map_change.hpp"
-#include "runtime/live/scribe.hpp"
 #include "runtime/live/service.hpp"
 #include "runtime/memory/shared_map.hpp"
 #include "runtime/run/event_log.hpp"
-#include "runtime/run/run_recorder.hpp"
+#include "runtime/run/run_statistics.hpp"
 #include "runtime/state/state_saver.hpp"
 
 namespace zonepack {
@@ -33,10 +33,10 @@ namespace zonepack {
 struct LiveRun::Parts {
   static constexpr std::size_t kNotes = 2048;
 
-  Parts(RunInputs& run_inputs, std::shared_ptr<RunMap> map, LiveMemory& live_memory,
+  Parts(RunInputs& run_inputs, std::shared_ptr<MapVersion> map, LiveMemory& live_memory,
         const Notifier& run_notifier, const LiveOptions& run_options)
       : inputs(run_inputs),
-        terms_of_next(map->driven().terms_of_next(run_options.preface.terms)),
+        terms_of_next(map->model().terms_of_next(run_options.preface.terms)),
         zones_memory(live_memory),
         notifier(run_notifier),
         options(run_options),
@@ -46,24 +46,24 @@ struct LiveRun::Parts {
                {inputs.settings.loading.read, inputs.settings.loading.rate_limit}),
         notes(kNotes),
         follower(
-            map, [this](std::uint32_t number) { return shelf.find(number); },
-            [this](const RunMap& next) { account_for(next); }),
+            map, [this](std::uint32_t number) { return registry.find(number); },
+            [this](const MapVersion& next) { account_for(next); }),
         log([this](ZoneId zone) {
-          return std::string_view(follower.map().driven().graph.name(zone));
+          return std::string_view(follower.map().model().graph.name(zone));
         }),
         recording(log),
         truth(inputs.truth ? &*inputs.truth : nullptr),
-        teller(follower, recording),
-        recorder(map->driven().graph, map->driven().needs, truth, period_ns, map->driven().limits,
-                 teller),
-        scribe(notes, follower, recorder),
+        event_messages(follower, recording),
+        recorder(map->model().graph, map->model().needs, truth, period_ns, map->model().limits,
+                 event_messages),
+        log_thread(notes, follower, recorder),
         events(notes, live_memory.served() ? &service.events : nullptr, overload),
         lines(kernel_gpio(), run_inputs.settings.gpio) {
-    shelf.add(std::move(map));
+    registry.add(std::move(map));
   }
 
-  std::shared_ptr<RunMap> first() const { return shelf.find(1); }
-  void account_for(const RunMap& next);
+  std::shared_ptr<MapVersion> first() const { return registry.find(1); }
+  void account_for(const MapVersion& next);
 
   static void tell(const std::string& message);  // to standard error
 
@@ -87,26 +87,26 @@ struct LiveRun::Parts {
   LiveOptions options;
   std::int64_t period_ns;
   SharedMap& shared;
-  MapShelf shelf;
+  MapRegistry registry;
   LiveLoader loader;
   SpscQueue<LiveNote> notes;
-  MapFollower follower;  // the scribe's
+  MapFollower follower;  // the log thread's
   EventLog log;
-  LiveRecorder recording;
+  RunRecording recording;
   std::optional<StateStore> state_store;
   std::optional<StateSaver> state_saver;
   const TruthTrack* truth;
-  EventTeller teller;
-  RunRecorder recorder;
-  Scribe scribe;
+  EventMessages event_messages;
+  RunStatistics recorder;
+  LogThread log_thread;
   OverloadCounters overload;
   Service service;
   EventFanOut events;
   LiveLines lines;
   Seqlock<LiveStatus> status;
   std::unique_ptr<LiveSource> source;
-  std::unique_ptr<CanRecorder> can_recorder;
-  std::optional<MapRun> maps;
+  std::unique_ptr<CanCapture> can_recorder;
+  std::optional<MapSwitcher> maps;
   std::unique_ptr<ControlLoop> loop;
   std::optional<MapChange> change;
   Thread control_thread;

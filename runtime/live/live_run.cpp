@@ -5,7 +5,7 @@
 
 #include "platform/clock.hpp"
 #include "platform/signals.hpp"
-#include "runtime/live/bus_teller.hpp"
+#include "runtime/live/bus_messages.hpp"
 #include "runtime/live/live_parts.hpp"
 
 namespace zonepack {
@@ -15,7 +15,7 @@ constexpr std::int64_t kWatch_ns = 20'000'000;
 
 }  // namespace
 
-LiveRun::LiveRun(RunInputs& inputs, std::shared_ptr<RunMap> map, LiveMemory& memory,
+LiveRun::LiveRun(RunInputs& inputs, std::shared_ptr<MapVersion> map, LiveMemory& memory,
                  const Notifier& notifier, const LiveOptions& options)
     : parts_(std::make_unique<Parts>(inputs, std::move(map), memory, notifier, options)) {}
 
@@ -33,10 +33,10 @@ bool LiveRun::start(std::string& fault) {
     }
   }
   const auto map = p.first();
-  const auto begun = p.shared.begin_map(static_cast<std::uint32_t>(map->driven().needs.size()));
+  const auto begun = p.shared.begin_map(static_cast<std::uint32_t>(map->model().needs.size()));
   ZP_REQUIRE(begun.ok());
   const CycleConfig config = cycle_config(p.inputs.settings);
-  if (const auto wrong = ZoneMarkers::fault_of(map->driven().graph, config.markers)) {
+  if (const auto wrong = ZoneMarkers::fault_of(map->model().graph, config.markers)) {
     fault = *wrong;
     return false;
   }
@@ -64,7 +64,7 @@ bool LiveRun::start(std::string& fault) {
   if (p.recording.tap() != nullptr) p.recording.tap()->follow(p.loop->last_status().state);
   p.change.emplace(MapChangePorts{p.inputs.settings, p.terms_of_next, p.shared,
                                   p.inputs.settings.loading.read, p.loader, p.events, *p.loop,
-                                  p.shelf, p.recording, p.service, Parts::tell});
+                                  p.registry, p.recording, p.service, Parts::tell});
   return p.start_threads(fault);
 }
 
@@ -72,11 +72,11 @@ void LiveRun::wait() {
   if (const std::string warning = parts_->source->warning(); !warning.empty()) {
     Parts::tell("warning: " + warning);
   }
-  BusTeller teller(parts_->source->interface());
+  BusMessages bus_messages(parts_->source->interface());
   const bool tells = parts_->options.source.kind != CanSourceChoice::Kind::kLog;
   while (!parts_->control_ended.load()) {
     if (tells) {
-      if (const auto told = teller.tell(parts_->status.load().bus)) Parts::tell(*told);
+      if (const auto told = bus_messages.next(parts_->status.load().bus)) Parts::tell(*told);
     }
     switch (next_signal(monotonic_ns() + kWatch_ns)) {
       case Signal::kStop:
@@ -106,7 +106,7 @@ std::optional<RunSummary> LiveRun::finish(std::string& fault) {
   p.maps->map().cycle.finish();
   p.loader.stop();
   p.source->stop();
-  p.scribe.stop();
+  p.log_thread.stop();
   if (p.state_saver) p.state_saver->stop();
   if (p.can_recorder) {
     if (const auto closed = p.can_recorder->close(); !closed) {

@@ -10,9 +10,9 @@
 #include "platform/notify.hpp"
 #include "runtime/live/can_source.hpp"
 #include "runtime/live/live_memory.hpp"
-#include "runtime/live/live_recorder.hpp"
+#include "runtime/live/run_recording.hpp"
+#include "runtime/run/map_version.hpp"
 #include "runtime/run/run_inputs.hpp"
-#include "runtime/run/run_map.hpp"
 #include "runtime/run/run_summary.hpp"
 
 namespace zonepack {
@@ -27,13 +27,13 @@ struct LiveOptions {
   bool allow_degraded = false;
 };
 
-// A run of the robot's threads: control, loader, scribe, and what feeds them.
+// A run of the robot's threads: control, loader, log thread, and what feeds them.
 //
 // Threads: all calls by the main thread, whose signals must be held (platform/signals.hpp).
 class LiveRun {
  public:
   // All but map and options must outlive this object. The map goes when another takes its place.
-  LiveRun(RunInputs& inputs, std::shared_ptr<RunMap> map, LiveMemory& memory,
+  LiveRun(RunInputs& inputs, std::shared_ptr<MapVersion> map, LiveMemory& memory,
           const Notifier& notifier, const LiveOptions& options);
   ~LiveRun();
 

@@ -47,7 +47,7 @@ void MapChange::begin() {
 }
 
 // In a thread of its own.
-Result<std::uint64_t> MapChange::prepare(const RunMap& in_use) {
+Result<std::uint64_t> MapChange::prepare(const MapVersion& in_use) {
   const std::string& folder = in_use.catalog().folder;
   const std::string path = folder + "/" + std::string(kManifestName);
   auto manifest = read_file(path, kMaxManifestFileBytes, ReadMode::kBuffered);
@@ -70,7 +70,7 @@ Result<std::uint64_t> MapChange::prepare(const RunMap& in_use) {
              " that there is room for since zoned was started; start it again with this map";
     return {ErrorCode::kTooLarge, static_cast<std::int64_t>(zones)};
   }
-  auto map = RunMap::make(last_number_ + 1, std::move(catalog).value(), ports_.terms, fault_);
+  auto map = MapVersion::make(last_number_ + 1, std::move(catalog).value(), ports_.terms, fault_);
   if (map == nullptr || !map->prepare(cycle_config(ports_.settings), ports_.loader, ports_.events,
                                       &ports_.shared, fault_)) {
     fault_.insert(0, path + ": ");

@@ -77,17 +77,17 @@ int run_live(const RunArguments& arguments) {
   std::string fault;
   MapTerms terms = map_terms(arguments, inputs.settings);
   terms.lease_ns = static_cast<std::int64_t>(inputs.settings.serve.lease_s * 1e9);
-  auto map = RunMap::make(1, std::move(inputs.catalog), terms, fault);
+  auto map = MapVersion::make(1, std::move(inputs.catalog), terms, fault);
   if (!map) return fail_run(fault);
-  const DrivenMap& driven = map->driven();
-  if (driven.warning) std::cerr << "zoned run: warning: " << *driven.warning << '\n';
+  const MapModel& model = map->model();
+  if (model.warning) std::cerr << "zoned run: warning: " << *model.warning << '\n';
 
   auto manager = Notifier::from_environment();
   if (!manager) std::cerr << "zoned run: NOTIFY_SOCKET: cannot be reached; nobody is told\n";
   const Notifier notifier = manager ? std::move(*manager) : Notifier();
   std::string warning;
   const auto memory = LiveMemory::open(
-      {zones_with_room_for_another_map(driven.needs.size()), driven.slots,
+      {zones_with_room_for_another_map(model.needs.size()), model.slots,
        socket_path(inputs.settings.serve),
        arguments.source.kind == CanSourceChoice::Kind::kSocketCan, &notifier, &handed},
       fault, warning);

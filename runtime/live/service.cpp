@@ -13,7 +13,7 @@ constexpr std::size_t kStack_bytes = 256 * 1024;
 }  // namespace
 
 bool Service::open(const ServeSettings& settings, const Seqlock<LiveStatus>& status,
-                   LiveMemory& memory, std::shared_ptr<const RunMap> first,
+                   LiveMemory& memory, std::shared_ptr<const MapVersion> first,
                    std::function<Result<std::uint64_t>(int fd)> dump, std::string& fault) {
   SharedMap& map = memory.map();
   const ServerPorts ports{
@@ -25,13 +25,13 @@ bool Service::open(const ServeSettings& settings, const Seqlock<LiveStatus>& sta
       .memory_fd = memory.reader_fd(),
       .lock_fd = memory.lock_fd(),
       .map_epoch = map.epoch(),
-      .lease_ns = first->driven().limits.lease_ns,
+      .lease_ns = first->model().limits.lease_ns,
       .resident_generation = [&map](ZoneId zone) { return map.generation(zone); },
       .dump = std::move(dump),
       .lines = lines};
   served_ = std::move(first);
-  server_ = Server::open(settings, ports, served_->catalog(), served_->driven().graph,
-                         served_->driven().pinned, fault);
+  server_ = Server::open(settings, ports, served_->catalog(), served_->model().graph,
+                         served_->model().pinned, fault);
   return server_ != nullptr;
 }
 
@@ -58,7 +58,7 @@ void Service::run(const Notifier& notifier) {
   }
 }
 
-bool Service::ready_for(const std::shared_ptr<const RunMap>& next) {
+bool Service::ready_for(const std::shared_ptr<const MapVersion>& next) {
   if (!server_) return true;
   const std::lock_guard lock(mutex_);
   if (known_ == next->number()) return true;
@@ -76,7 +76,7 @@ bool Service::done_with(std::uint32_t map) {
 
 // Behind a turn, which took the events: those of a map that the run is done with as well.
 void Service::change_maps() {
-  std::shared_ptr<const RunMap> coming;
+  std::shared_ptr<const MapVersion> coming;
   std::uint32_t going = 0;
   {
     const std::lock_guard lock(mutex_);
@@ -84,7 +84,7 @@ void Service::change_maps() {
     going = std::exchange(asked_to_go_, std::exchange(going_, 0));
   }
   if (coming) {
-    const DrivenMap& map = coming->driven();
+    const MapModel& map = coming->model();
     server_->offer_map(coming->number(), coming->catalog(), map.graph, map.pinned);
     offered_ = std::move(coming);
   }

@@ -12,7 +12,7 @@
 #include "platform/realtime.hpp"
 #include "platform/spsc_queue.hpp"
 #include "runtime/live/live_memory.hpp"
-#include "runtime/run/run_map.hpp"
+#include "runtime/run/map_version.hpp"
 #include "runtime/serve/server.hpp"
 
 namespace zonepack {
@@ -29,12 +29,12 @@ class Service {
 
   // Starts to listen; false with a complete message in `fault`.
   bool open(const ServeSettings& settings, const Seqlock<LiveStatus>& status, LiveMemory& memory,
-            std::shared_ptr<const RunMap> map, std::function<Result<std::uint64_t>(int fd)> dump,
-            std::string& fault);
+            std::shared_ptr<const MapVersion> map,
+            std::function<Result<std::uint64_t>(int fd)> dump, std::string& fault);
 
   // A change of map, by one thread that asks until the answer is true. Before the offer: the server
   // knows the map. After it: the server has let go of this one.
-  bool ready_for(const std::shared_ptr<const RunMap>& next);
+  bool ready_for(const std::shared_ptr<const MapVersion>& next);
   bool done_with(std::uint32_t map);
 
   Result<void> start(const Notifier& notifier, std::function<std::uint64_t()> cycles);
@@ -52,12 +52,12 @@ class Service {
   void change_maps();
 
   // The server's thread holds the maps that the server refers to.
-  std::shared_ptr<const RunMap> served_, offered_;
-  std::mutex mutex_;                      // of what follows
-  std::shared_ptr<const RunMap> coming_;  // asked for
-  std::uint32_t known_ = 0;               // the last one that the server was told of
-  std::uint32_t going_ = 0, gone_ = 0;    // asked to be let go of; let go of last
-  std::uint32_t asked_to_go_ = 0;         // a turn ago: its events were taken since
+  std::shared_ptr<const MapVersion> served_, offered_;
+  std::mutex mutex_;                          // of what follows
+  std::shared_ptr<const MapVersion> coming_;  // asked for
+  std::uint32_t known_ = 0;                   // the last one that the server was told of
+  std::uint32_t going_ = 0, gone_ = 0;        // asked to be let go of; let go of last
+  std::uint32_t asked_to_go_ = 0;             // a turn ago: its events were taken since
   std::unique_ptr<Server> server_;
   std::function<std::uint64_t()> cycles_;
   std::uint64_t cycles_seen_ = 0;

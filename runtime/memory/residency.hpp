@@ -121,7 +121,7 @@ class Residency {
   Result<Eviction> drop(ZoneId zone) noexcept;
 
   // Counts on from another map's counters.
-  void count_on(const ResidencyCounters& counters) noexcept { counters_ = counters; }
+  void continue_counters(const ResidencyCounters& counters) noexcept { counters_ = counters; }
 
   // While frozen nothing is evicted: admit() says kNoRoom where it would have to.
   void freeze(bool frozen) noexcept { frozen_ = frozen; }
@@ -138,7 +138,6 @@ class Residency {
 
   ZoneState state(ZoneId zone) const noexcept { return records_[zone].state; }
   bool resident(ZoneId zone) const noexcept { return state(zone) == ZoneState::kResident; }
-  bool is_protected(ZoneId zone) const noexcept { return records_[zone].protected_; }
   bool pinned(ZoneId zone) const noexcept { return records_[zone].pinned; }
   // What is charged for the zone now; nothing when absent.
   ZoneNeed charge(ZoneId zone) const noexcept;

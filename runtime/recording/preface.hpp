@@ -11,7 +11,7 @@
 #include "runtime/odometry/pose.hpp"
 #include "runtime/pack_format/limits.hpp"
 #include "runtime/recording/bytes.hpp"
-#include "runtime/run/driven_map.hpp"
+#include "runtime/run/map_model.hpp"
 
 namespace zonepack {
 

@@ -8,21 +8,22 @@
 #include <vector>
 
 #include "platform/base/require.hpp"
-#include "runtime/control/map_run.hpp"
+#include "runtime/control/map_switcher.hpp"
 #include "runtime/replay/recorded_loader.hpp"
 #include "runtime/replay/timed_loader.hpp"
 #include "runtime/run/event_log.hpp"
+#include "runtime/run/map_version.hpp"
 #include "runtime/run/run_inputs.hpp"
-#include "runtime/run/run_map.hpp"
-#include "runtime/run/run_recorder.hpp"
 #include "runtime/run/run_result.hpp"
+#include "runtime/run/run_statistics.hpp"
 
 namespace zonepack {
 namespace {
 
 // A map that the run was offered.
-std::shared_ptr<RunMap> map_of(const RecordingReader& recording, const Settings& settings,
-                               const MapTerms& terms, std::uint32_t number, std::string& fault) {
+std::shared_ptr<MapVersion> map_of(const RecordingReader& recording, const Settings& settings,
+                                   const MapTerms& terms, std::uint32_t number,
+                                   std::string& fault) {
   const std::string which = "map " + std::to_string(number) + ", which the run was offered, ";
   const RecordedMap* const recorded = recording.map(number);
   if (recorded == nullptr) {
@@ -34,31 +35,31 @@ std::shared_ptr<RunMap> map_of(const RecordingReader& recording, const Settings&
     fault = which + "cannot be used: " + to_string(catalog.error().code);
     return nullptr;
   }
-  return RunMap::make(number, std::move(catalog).value(), terms, fault);
+  return MapVersion::make(number, std::move(catalog).value(), terms, fault);
 }
 
 // All that one run needs, in the order in which the parts refer to each other.
 class RecordedDrive final : public EventSink {
  public:
-  RecordedDrive(RecordingReader& recording, const RecordedRun& run, std::shared_ptr<RunMap> map)
+  RecordedDrive(RecordingReader& recording, const RecordedRun& run, std::shared_ptr<MapVersion> map)
       : recording_(recording),
         settings_(run.settings),
-        terms_(map->driven().terms_of_next(recording.preface().terms)),
+        terms_(map->model().terms_of_next(recording.preface().terms)),
         exact_(!recording.checkpoint()),
         first_(map),
         maps_in_use_{map},
         recorded_(map->catalog()),
-        timed_(map->driven().work, terms_.rates),
+        timed_(map->model().work, terms_.rates),
         follower_(
             map, [this](std::uint32_t number) { return find(number); },
-            [this](const RunMap& next) {
-              recorder_.change_map(next.driven().graph, next.driven().needs, next.driven().limits);
+            [this](const MapVersion& next) {
+              recorder_.change_map(next.model().graph, next.model().needs, next.model().limits);
             }),
         log_([this](ZoneId zone) {
-          return std::string_view(follower_.map().driven().graph.name(zone));
+          return std::string_view(follower_.map().model().graph.name(zone));
         }),
-        recorder_(map->driven().graph, map->driven().needs, nullptr, terms_.period_ns,
-                  map->driven().limits, log_) {
+        recorder_(map->model().graph, map->model().needs, nullptr, terms_.period_ns,
+                  map->model().limits, log_) {
     recorder_.keep_trace();
   }
 
@@ -71,10 +72,10 @@ class RecordedDrive final : public EventSink {
 
  private:
   ZoneLoader& loader() { return exact_ ? static_cast<ZoneLoader&>(recorded_) : timed_; }
-  RunMap& first() { return *first_; }
-  std::shared_ptr<RunMap> find(std::uint32_t number) const;
-  bool prepare(RunMap& map, std::string& fault);
-  bool begin_with(const RunMap& map, std::string& fault);
+  MapVersion& first() { return *first_; }
+  std::shared_ptr<MapVersion> find(std::uint32_t number) const;
+  bool prepare(MapVersion& map, std::string& fault);
+  bool begin_with(const MapVersion& map, std::string& fault);
   void begin();
   void go_on_from(const Checkpoint& checkpoint);
   bool run_cycles(std::string& fault);
@@ -89,14 +90,14 @@ class RecordedDrive final : public EventSink {
   const Settings& settings_;
   const MapTerms terms_;  // of maps that the run is offered
   const bool exact_;
-  const std::shared_ptr<RunMap> first_;               // drawings stay on its ground
-  std::vector<std::shared_ptr<RunMap>> maps_in_use_;  // in use, on offer
+  const std::shared_ptr<MapVersion> first_;               // drawings stay on its ground
+  std::vector<std::shared_ptr<MapVersion>> maps_in_use_;  // in use, on offer
   RecordedLoader recorded_;
   TimedLoader timed_;  // from a checkpoint
   MapFollower follower_;
   EventLog log_;
-  RunRecorder recorder_;
-  std::optional<MapRun> maps_;
+  RunStatistics recorder_;
+  std::optional<MapSwitcher> maps_;
   std::vector<LoadResult> loads_;  // of the cycle
   std::vector<Command> commands_;  // of the cycle
   std::vector<Command> waiting_;   // for the cycles to come
@@ -105,12 +106,12 @@ class RecordedDrive final : public EventSink {
   std::uint64_t frames_ = 0;
 };
 
-std::shared_ptr<RunMap> RecordedDrive::find(std::uint32_t number) const {
-  const auto found = std::ranges::find(maps_in_use_, number, &RunMap::number);
+std::shared_ptr<MapVersion> RecordedDrive::find(std::uint32_t number) const {
+  const auto found = std::ranges::find(maps_in_use_, number, &MapVersion::number);
   return found == maps_in_use_.end() ? nullptr : *found;
 }
 
-bool RecordedDrive::prepare(RunMap& map, std::string& fault) {
+bool RecordedDrive::prepare(MapVersion& map, std::string& fault) {
   return map.prepare(cycle_config(settings_), loader(), *this, nullptr, fault);
 }
 
@@ -126,7 +127,7 @@ void RecordedDrive::begin() {
 
 void RecordedDrive::go_on_from(const Checkpoint& checkpoint) {
   for (const Checkpoint::Held& held : checkpoint.resident) {
-    const std::vector<ZoneNeed>& needs = first().driven().needs;
+    const std::vector<ZoneNeed>& needs = first().model().needs;
     if (held.zone >= needs.size()) continue;
     if (first().memory().restore(held.zone, needs[held.zone], held.generation)) {
       recorder_.begin_with(held.zone);
@@ -161,7 +162,7 @@ bool RecordedDrive::answers(const RecordedInput& input, std::string& fault) {
     const std::optional<LoadRequest> asked = recorded_.asked();
     if (recorded_.answer(load)) continue;
     const auto told = [&](ZoneId zone, std::uint32_t generation) {
-      const ZoneGraph& graph = follower_.map().driven().graph;
+      const ZoneGraph& graph = follower_.map().model().graph;
       const std::string name =
           zone < graph.zone_count() ? graph.name(zone) : "number " + std::to_string(zone);
       return "zone " + name + " (generation " + std::to_string(generation) + ")";
@@ -273,7 +274,7 @@ std::optional<RecordedRunResult> RecordedDrive::result(const std::string& events
   summary.can_frames = frames_;
   summary.event_log_hash = std::move(hash).value();
   result.replay.trace = recorder_.take_trace();
-  describe_map(first().driven(), result.replay.trace);
+  describe_map(first().model(), result.replay.trace);
   result.first_cycle = recording_.first_cycle();
   result.next_cycle = recording_.cycles_read();
   result.complete = recording_.complete();
@@ -307,12 +308,11 @@ std::optional<RecordedRunResult> replay_recording(RecordingReader& recording,
                                                   const std::string& events_path,
                                                   std::string& fault) {
   const RecordingPreface& preface = recording.preface();
-  std::shared_ptr<RunMap> map = RunMap::make(1, run.catalog, preface.terms, fault);
+  std::shared_ptr<MapVersion> map = MapVersion::make(1, run.catalog, preface.terms, fault);
   if (map == nullptr) return std::nullopt;
   const std::uint32_t in_use = recording.checkpoint() ? recording.checkpoint()->map : 1;
   if (in_use != 1) {
-    map =
-        map_of(recording, run.settings, map->driven().terms_of_next(preface.terms), in_use, fault);
+    map = map_of(recording, run.settings, map->model().terms_of_next(preface.terms), in_use, fault);
     if (map == nullptr) return std::nullopt;
   }
   return RecordedDrive(recording, run, std::move(map)).drive(events_path, fault);

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "runtime/replay/pack_filler.hpp"
-#include "runtime/run/driven_map.hpp"
 #include "runtime/run/event_log.hpp"
+#include "runtime/run/map_model.hpp"
 #include "runtime/run/run_inputs.hpp"
-#include "runtime/run/run_recorder.hpp"
 #include "runtime/run/run_result.hpp"
+#include "runtime/run/run_statistics.hpp"
 
 namespace zonepack {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 // All that one run needs, in the order in which the parts refer to each other.
 class LogDrive {
  public:
-  LogDrive(ReplayInput& input, const DrivenMap& map)
+  LogDrive(ReplayInput& input, const MapModel& map)
       : input_(input),
         map_(map),
         memory_(map.needs.size(), map.limits),
@@ -39,13 +39,13 @@ class LogDrive {
   std::optional<ReplayResult> result(const Cycle& cycle, std::string& fault);
 
   ReplayInput& input_;
-  const DrivenMap& map_;
+  const MapModel& map_;
   Residency memory_;
   std::unique_ptr<PackFiller> filler_;
   ModelledLoader loader_;
   SimCanBus bus_;
   EventLog log_;
-  RunRecorder recorder_;
+  RunStatistics recorder_;
   std::uint64_t frames_ = 0;
 };
 
@@ -127,7 +127,7 @@ std::optional<ReplayResult> LogDrive::result(const Cycle& cycle, std::string& fa
 }  // namespace
 
 std::optional<ReplayResult> replay(ReplayInput input, std::string& fault) {
-  const auto map = DrivenMap::make(input.catalog, input.terms, fault);
+  const auto map = MapModel::make(input.catalog, input.terms, fault);
   if (!map) return std::nullopt;
   auto result = LogDrive(input, *map).drive(fault);
   if (result && map->warning) result->warnings.push_back(*map->warning);

@@ -10,7 +10,7 @@
 #include "platform/sim/sim_can_bus.hpp"
 #include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/run/driven_map.hpp"
+#include "runtime/run/map_model.hpp"
 #include "runtime/run/run_files.hpp"
 #include "runtime/run/run_summary.hpp"
 #include "runtime/run/run_trace.hpp"

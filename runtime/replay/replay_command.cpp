@@ -40,8 +40,8 @@ std::optional<std::string> write_results(const ReplayArguments& arguments, const
                                          const std::vector<BaselineRow>& baseline,
                                          const ReplayResult& result) {
   if (auto problem = write_summary(result.summary, arguments.json)) return problem;
-  const std::string& driven = arguments.can.empty() ? arguments.recording : arguments.can;
-  const RunReportInput run{catalog.folder, driven, result.summary, result.trace, baseline};
+  const std::string& model = arguments.can.empty() ? arguments.recording : arguments.can;
+  const RunReportInput run{catalog.folder, model, result.summary, result.trace, baseline};
   if (!arguments.picture.empty()) {
     if (auto problem = report::write_report(arguments.picture, make_run_picture(run))) {
       return problem;

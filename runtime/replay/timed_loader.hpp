@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runtime/control/zone_loader.hpp"
-#include "runtime/run/map_model.hpp"
+#include "runtime/run/map_demand.hpp"
 #include "runtime/run/modelled_loader.hpp"
 
 namespace zonepack {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,30 +14,40 @@
 
 namespace zonepack {
 
-// A catalog in the shape in which the core takes it.
-ZoneGraph graph_of(const Catalog& catalog);
-std::vector<ZoneNeed> needs_of(const Catalog& catalog);
-std::vector<LoadWork> work_of(const Catalog& catalog);
+// How a map is to be held.
+struct MapTerms {
+  std::optional<ByteCount> budget{};  // nothing: see limits_for()
+  std::uint64_t max_signatures = 0;
+  std::vector<std::string> pinned{};  // names
+  LoadRates rates{};
+  std::int64_t period_ns = 10'000'000;
+  std::int64_t lease_ns = 0;
+  std::optional<std::uint32_t> slots{};  // that there are; nothing: as many as are of use
+};
 
-// Seconds from wish to use, by ZoneId: the load, and two cycles in which it is begun and seen.
-std::vector<float> load_times_of(const std::vector<LoadWork>& work, const LoadRates& rates,
-                                 std::int64_t period_ns);
+// A map in the shape in which the cycle takes it, with the limits to hold. Immutable; the catalog
+// must outlive it.
+struct MapModel {
+  const Catalog& catalog;
+  std::vector<ZoneId> pinned;
+  ResidencyLimits limits;
+  ZoneGraph graph;
+  std::vector<ZoneNeed> needs;
+  std::vector<LoadWork> work;
+  std::vector<float> load_s;
+  // To reserve: no more than all zones fill together, and another version's largest beside them.
+  std::uint32_t slots;
+  std::optional<std::string> warning;  // a complete message
 
-// Limits for a budget. Without one: the smallest that holds any zone, any one neighbour and the
-// pins, or the whole map when a limit of signatures is given, so that it alone limits, as the
-// paper's MemoryThr does. lease_ns is left 0: nobody reads in a replay.
-ResidencyLimits limits_for(const Catalog& catalog, std::optional<ByteCount> budget,
-                           std::uint64_t max_signatures, const std::vector<ZoneId>& pinned);
+  // Null when the map cannot be held on these terms; `fault` says why in a complete message.
+  static std::unique_ptr<MapModel> make(const Catalog& catalog, const MapTerms& terms,
+                                        std::string& fault);
 
-// Why the map cannot be driven within these limits: complete messages that name the zone and the
-// smallest budget that would do. A zone that fits, but not together with its neighbours, is a
-// warning: the robot will wait at that door.
-std::optional<std::string> refusal(const Catalog& catalog, const ResidencyLimits& limits,
-                                   const std::vector<ZoneId>& pinned);
-std::optional<std::string> tightness(const Catalog& catalog, const ResidencyLimits& limits,
-                                     const std::vector<ZoneId>& pinned);
+  // How another version of the map is to be held in this one's place: no more of anything.
+  MapTerms terms_of_next(const MapTerms& terms) const;
 
-// What to do about a budget that is too small, as a clause.
-std::string smallest_budget_text(const Catalog& catalog, const std::vector<ZoneId>& pinned);
+  // Pins what is to be pinned in a new Residency; false with a complete message in `fault`.
+  bool pin(Residency& memory, std::string& fault) const;
+};
 
 }  // namespace zonepack

@@ -10,7 +10,7 @@
 #include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/odometry/pose.hpp"
-#include "runtime/run/driven_map.hpp"
+#include "runtime/run/map_model.hpp"
 #include "runtime/run/run_files.hpp"
 #include "runtime/settings/settings.hpp"
 

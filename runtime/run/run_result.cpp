@@ -3,7 +3,7 @@
 
 namespace zonepack {
 
-void describe_map(const DrivenMap& map, RunTrace& trace) {
+void describe_map(const MapModel& map, RunTrace& trace) {
   const ResidencyLimits& limits = map.limits;
   for (const CatalogZone& zone : map.catalog.zones) {
     trace.zones.push_back(

@@ -18,7 +18,7 @@ RequestHandler::RequestHandler(const ServerPorts& ports, std::uint32_t requests_
     : ports_(ports),
       requests_per_s_(requests_per_s),
       counters_(counters),
-      desk_(ports.commands, ports.replies) {}
+      router_(ports.commands, ports.replies) {}
 
 void RequestHandler::refuse(const Call& call, wire::Fault fault, std::string_view text) {
   MessageBuilder message;
@@ -220,7 +220,7 @@ void RequestHandler::plan(const Call& call) {
         static_cast<std::uint32_t>(std::min(route->zones.size(), Command::kMostRoute));
     std::copy_n(route->zones.begin(), order.route_length, order.route.begin());
     // The answer is the route; the command's own reply tells nobody.
-    if (const auto posted = desk_.post(0, 0, order, call.monotonic_ns); !posted) {
+    if (const auto posted = router_.post(0, 0, order, call.monotonic_ns); !posted) {
       return refuse(call, fault_of(posted.error()));
     }
   }
@@ -228,7 +228,7 @@ void RequestHandler::plan(const Call& call) {
 }
 
 void RequestHandler::command(const Call& call, Command command) {
-  const auto posted = desk_.post(call.from.key, call.id(), command, call.monotonic_ns);
+  const auto posted = router_.post(call.from.key, call.id(), command, call.monotonic_ns);
   if (!posted) refuse(call, fault_of(posted.error()));
 }
 
@@ -300,7 +300,7 @@ void RequestHandler::tell(Session& to, const Dump& dump) {
   to.answer(message.reply(dump.request_id, wire::CreateDumped(message.builder(), *dump.bytes)));
 }
 
-void RequestHandler::tell(Session& to, const CommandDesk::Settled& settled) const {
+void RequestHandler::tell(Session& to, const CommandRouter::Settled& settled) const {
   MessageBuilder message;
   const std::uint64_t id = settled.request_id;
   if (settled.reply.error.code != ErrorCode::kOk) {

@@ -6,7 +6,7 @@
 #include "platform/local_socket.hpp"
 #include "platform/slow_job.hpp"
 #include "runtime/serve/answers.hpp"
-#include "runtime/serve/command_desk.hpp"
+#include "runtime/serve/command_router.hpp"
 #include "runtime/serve/served_map.hpp"
 #include "runtime/serve/server_ports.hpp"
 #include "runtime/serve/session.hpp"
@@ -25,21 +25,21 @@ class RequestHandler {
   void take(Session& from, LocalSocket::Received& received, Message bytes, ServedMap& map,
             std::int64_t monotonic_ns);
 
-  CommandDesk& desk() noexcept { return desk_; }
+  CommandRouter& router() noexcept { return router_; }
 
   // Tells `from` what became of its command.
-  void tell(Session& to, const CommandDesk::Settled& settled) const;
+  void tell(Session& to, const CommandRouter::Settled& settled) const;
 
   // The recording that was asked for is written.
   struct Dump {
-    CommandDesk::ClientKey client = 0;
+    CommandRouter::ClientKey client = 0;
     std::uint64_t request_id = 0;
     Result<std::uint64_t> bytes;
   };
   std::optional<Dump> poll_dump();
   static void tell(Session& to, const Dump& dump);
 
-  bool busy() const noexcept { return desk_.pending() > 0 || dump_.running(); }
+  bool busy() const noexcept { return router_.pending() > 0 || dump_.running(); }
 
  private:
   // What stays the same while one request is handled.
@@ -69,9 +69,9 @@ class RequestHandler {
   const ServerPorts& ports_;
   const std::uint32_t requests_per_s_;
   ServerCounters& counters_;
-  CommandDesk desk_;
+  CommandRouter router_;
   std::uint64_t dump_request_ = 0;
-  CommandDesk::ClientKey dump_client_ = 0;
+  CommandRouter::ClientKey dump_client_ = 0;
   SlowJob dump_{"zoned-dump"};
 };
 

@@ -71,7 +71,7 @@ std::unique_ptr<Server> Server::open(const ServeSettings& settings, const Server
   }
   std::unique_ptr<Server> server(new Server(settings, ports, std::move(poller).value()));
   server->map_ = served_map(catalog, graph, 1, ports.map_epoch, pinned);
-  server->handler_.desk().use(server->map_->zones, server->map_->serial);
+  server->handler_.router().use(server->map_->zones, server->map_->serial);
   if (!server->add_listener(settings.socket, settings.mode, false, fault) ||
       !server->add_listener(settings.looking_socket, settings.looking_mode, true, fault)) {
     return nullptr;
@@ -112,9 +112,9 @@ void Server::forget_map(std::uint32_t serial) {
 
 void Server::change_map() {
   if (!offered_) return;
-  handler_.desk().map_changed();
+  handler_.router().map_changed();
   map_ = std::move(offered_);
-  handler_.desk().use(map_->zones, map_->serial);
+  handler_.router().use(map_->zones, map_->serial);
   ++counters_.map_changes;
   MessageBuilder message;
   const auto notice = message.reply(
@@ -126,7 +126,7 @@ void Server::change_map() {
 }
 
 bool Server::post(const Command& command) {
-  return handler_.desk().post(0, 0, command, monotonic_ns()).ok();
+  return handler_.router().post(0, 0, command, monotonic_ns()).ok();
 }
 
 void Server::run() {
@@ -214,16 +214,16 @@ void Server::tell_subscribers() {
 }
 
 void Server::settle() {
-  handler_.desk().settle(now_ns_, ports_.status.load().now_ns, ports_.lease_ns,
-                         [this](const CommandDesk::Settled& settled) {
-                           if (Session* const session = session_of(settled.client)) {
-                             handler_.tell(*session, settled);
-                           }
-                         });
+  handler_.router().settle(now_ns_, ports_.status.load().now_ns, ports_.lease_ns,
+                           [this](const CommandRouter::Settled& settled) {
+                             if (Session* const session = session_of(settled.client)) {
+                               handler_.tell(*session, settled);
+                             }
+                           });
   if (const auto dump = handler_.poll_dump()) {
     if (Session* const session = session_of(dump->client)) RequestHandler::tell(*session, *dump);
   }
-  counters_.leases = static_cast<std::uint32_t>(handler_.desk().leases());
+  counters_.leases = static_cast<std::uint32_t>(handler_.router().leases());
 }
 
 Session* Server::session_of(std::uint64_t key) noexcept {
@@ -305,7 +305,7 @@ void Server::tidy() {
     session->check(now_ns_);
     if (session->dropped()) {
       counters_.clients_dropped += session->was_late() ? 1 : 0;
-      handler_.desk().client_gone(session->key);
+      handler_.router().client_gone(session->key);
       session.reset();
       --counters_.clients;
       continue;

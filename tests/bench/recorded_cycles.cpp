@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
   if (recording->checkpoint()) return fail("the recording does not begin with cycle 0");
   const auto run = open_recorded_run(recording->preface(), fault);
   if (!run) return fail(fault);
-  const auto map = DrivenMap::make(run->catalog, recording->preface().terms, fault);
+  const auto map = MapModel::make(run->catalog, recording->preface().terms, fault);
   if (!map) return fail(fault);
 
   const auto zones = static_cast<std::uint32_t>(map->needs.size());

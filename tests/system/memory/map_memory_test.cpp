@@ -5,10 +5,10 @@
 #include "packer/build/manifest_writer.hpp"
 #include "packer/encode/pack_writer.hpp"
 #include "platform/atomic_file.hpp"
-#include "runtime/control/map_keeper.hpp"
+#include "runtime/control/zone_keeper.hpp"
 #include "runtime/map/loader.hpp"
 #include "runtime/memory/arena.hpp"
-#include "runtime/run/map_model.hpp"
+#include "runtime/run/map_demand.hpp"
 #include "runtime/serve/server.hpp"
 #include "runtime/zones/preload.hpp"
 #include "runtime/zones/tracker.hpp"
@@ -101,7 +101,7 @@ TEST_P(MapMemory, IsNeverMoreThanWhatIsCharged) {
   NullLoader loader;
   NullEvents events;
   EventStamper stamper(events);
-  const MapKeeper keeper(memory, loader, stamper, needs, {});
+  const ZoneKeeper keeper(memory, loader, stamper, needs, {});
   const ZoneTracker tracker(graph);
   const Preload preload(graph, load_s);
   const ZoneTable served(needs.size());

@@ -7,7 +7,7 @@
 #include "packer/build/manifest_writer.hpp"
 #include "platform/atomic_file.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/run/map_model.hpp"
+#include "runtime/run/map_demand.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace zonepack::packer {

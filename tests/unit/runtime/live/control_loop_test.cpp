@@ -100,7 +100,7 @@ class Loop : public testing::Test {
   Cycle cycle{testing_support::sample_robot(), {graph, needs, load_s, {}, memory, loader, notes}};
   Catalog catalog;
   MapInUse in_use{catalog, graph, needs, memory, cycle};
-  MapRun maps{in_use, loader, nullptr};
+  MapSwitcher maps{in_use, loader, nullptr};
   Residency other_memory{3, {800, 0, 100, 0, {8, 20}, 1'000'000'000}};
   Cycle other_cycle{testing_support::sample_robot(),
                     {graph, needs, load_s, {}, other_memory, loader, notes, nullptr, 2}};

@@ -17,8 +17,8 @@
 #include "runtime/recording/input_writer.hpp"
 #include "runtime/recording/preface.hpp"
 #include "runtime/replay/recorded_run.hpp"
-#include "runtime/run/driven_map.hpp"
 #include "runtime/run/event_log.hpp"
+#include "runtime/run/map_model.hpp"
 #include "runtime/run/modelled_loader.hpp"
 #include "runtime/run/run_files.hpp"
 #include "runtime/run/run_inputs.hpp"
@@ -71,7 +71,7 @@ class RecordedDrive {
                     FlightRecorder* flight, const AfterCycle& after_cycle = {}) {
     std::mt19937_64 random(seed);
     std::string fault;
-    const auto map = DrivenMap::make(run_.catalog, terms_, fault);
+    const auto map = MapModel::make(run_.catalog, terms_, fault);
     if (!map) throw std::runtime_error(fault);
     Residency memory(map->needs.size(), map->limits);
     if (!map->pin(memory, fault)) throw std::runtime_error(fault);

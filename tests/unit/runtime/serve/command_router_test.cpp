@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/serve/command_desk.hpp"
+#include "runtime/serve/command_router.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,10 +16,10 @@ class Desk : public testing::Test {
   SpscQueue<Command> commands{8};
   SpscQueue<CommandReply> replies{8};
   ZoneTable zones{4};
-  CommandDesk desk{commands, replies};
-  std::vector<CommandDesk::Settled> told;
+  CommandRouter router{commands, replies};
+  std::vector<CommandRouter::Settled> told;
 
-  void SetUp() override { desk.use(zones, 0); }
+  void SetUp() override { router.use(zones, 0); }
 
   static Command command_of(Command::Kind kind, ZoneId zone = 0) {
     Command command;
@@ -28,8 +28,8 @@ class Desk : public testing::Test {
     return command;
   }
   void settle(std::int64_t monotonic_ns = 0, std::int64_t run_ns = 0) {
-    desk.settle(monotonic_ns, run_ns, kLease_ns,
-                [this](const CommandDesk::Settled& settled) { told.push_back(settled); });
+    router.settle(monotonic_ns, run_ns, kLease_ns,
+                  [this](const CommandRouter::Settled& settled) { told.push_back(settled); });
   }
   // The control thread takes one command and answers it.
   Command answer(ErrorCode code = ErrorCode::kOk) {
@@ -47,8 +47,8 @@ class Desk : public testing::Test {
 };
 
 TEST_F(Desk, TakesRepliesToWhoAskedWhateverTheirOrder) {
-  ASSERT_TRUE(desk.post(1, 10, command_of(Command::Kind::kPin, 2), 0).ok());
-  ASSERT_TRUE(desk.post(2, 20, command_of(Command::Kind::kFreeze), 0).ok());
+  ASSERT_TRUE(router.post(1, 10, command_of(Command::Kind::kPin, 2), 0).ok());
+  ASSERT_TRUE(router.post(2, 20, command_of(Command::Kind::kFreeze), 0).ok());
   answer(ErrorCode::kNoRoom);
   answer();
   settle();
@@ -58,40 +58,41 @@ TEST_F(Desk, TakesRepliesToWhoAskedWhateverTheirOrder) {
   EXPECT_EQ(told[0].reply.error.code, ErrorCode::kNoRoom);
   EXPECT_EQ(told[1].client, 2u);
   EXPECT_FALSE(zones[2].pinned) << "refused";
-  EXPECT_EQ(desk.pending(), 0u);
+  EXPECT_EQ(router.pending(), 0u);
 }
 
 TEST_F(Desk, IsBusyRatherThanWaitingForRoom) {
   for (int i = 0; i < 8; ++i) {
-    ASSERT_TRUE(desk.post(1, 1, command_of(Command::Kind::kFreeze), 0).ok());
+    ASSERT_TRUE(router.post(1, 1, command_of(Command::Kind::kFreeze), 0).ok());
   }
-  EXPECT_EQ(desk.post(1, 9, command_of(Command::Kind::kFreeze), 0).error().code, ErrorCode::kBusy);
-  EXPECT_EQ(desk.pending(), 8u);
+  EXPECT_EQ(router.post(1, 9, command_of(Command::Kind::kFreeze), 0).error().code,
+            ErrorCode::kBusy);
+  EXPECT_EQ(router.pending(), 8u);
 }
 
 TEST_F(Desk, GivesUpAnAnswerThatDoesNotComeAndGivesBackALeaseThatComesLater) {
-  ASSERT_TRUE(desk.post(1, 10, command_of(Command::Kind::kLease, 3), 0).ok());
-  settle(CommandDesk::kPatience_ns - 1);
+  ASSERT_TRUE(router.post(1, 10, command_of(Command::Kind::kLease, 3), 0).ok());
+  settle(CommandRouter::kPatience_ns - 1);
   EXPECT_TRUE(told.empty());
-  settle(CommandDesk::kPatience_ns);
+  settle(CommandRouter::kPatience_ns);
   ASSERT_EQ(told.size(), 1u);
   EXPECT_EQ(told[0].reply.error.code, ErrorCode::kBusy);
   answer();
-  settle(CommandDesk::kPatience_ns);
+  settle(CommandRouter::kPatience_ns);
   Command release;
   ASSERT_TRUE(commands.pop(release));
   EXPECT_EQ(release.kind, Command::Kind::kRelease);
   EXPECT_EQ(release.lease.zone, 3u);
-  EXPECT_EQ(desk.leases(), 0u);
+  EXPECT_EQ(router.leases(), 0u);
 }
 
 TEST_F(Desk, AClientsEndIsTheEndOfItsLeasesEvenOfOneStillOnItsWay) {
-  ASSERT_TRUE(desk.post(1, 10, command_of(Command::Kind::kLease, 0), 0).ok());
-  ASSERT_TRUE(desk.post(1, 11, command_of(Command::Kind::kLease, 1), 0).ok());
+  ASSERT_TRUE(router.post(1, 10, command_of(Command::Kind::kLease, 0), 0).ok());
+  ASSERT_TRUE(router.post(1, 11, command_of(Command::Kind::kLease, 1), 0).ok());
   answer();
   settle();
   EXPECT_EQ(zones[0].leases, 1u);
-  desk.client_gone(1);
+  router.client_gone(1);
   EXPECT_EQ(zones[0].leases, 0u);
   answer();  // zone 1
   settle();
@@ -106,12 +107,12 @@ TEST_F(Desk, AClientsEndIsTheEndOfItsLeasesEvenOfOneStillOnItsWay) {
 }
 
 TEST_F(Desk, ReleasesWaitForRoomInTheQueue) {
-  ASSERT_TRUE(desk.post(1, 10, command_of(Command::Kind::kLease, 0), 0).ok());
+  ASSERT_TRUE(router.post(1, 10, command_of(Command::Kind::kLease, 0), 0).ok());
   answer();
   settle();
   while (commands.push(Command())) {
   }
-  desk.client_gone(1);
+  router.client_gone(1);
   settle();
   Command command;
   while (commands.pop(command)) EXPECT_NE(command.kind, Command::Kind::kRelease);
@@ -121,35 +122,35 @@ TEST_F(Desk, ReleasesWaitForRoomInTheQueue) {
 }
 
 TEST_F(Desk, ForgetsLeasesAtTheirDeadline) {
-  ASSERT_TRUE(desk.post(1, 10, command_of(Command::Kind::kLease, 0), 0).ok());
+  ASSERT_TRUE(router.post(1, 10, command_of(Command::Kind::kLease, 0), 0).ok());
   answer();
   settle(0, 1000);
   settle(0, 1000 + kLease_ns);
-  EXPECT_EQ(desk.leases(), 1u);
+  EXPECT_EQ(router.leases(), 1u);
   settle(0, 1001 + kLease_ns);
-  EXPECT_EQ(desk.leases(), 0u);
+  EXPECT_EQ(router.leases(), 0u);
   EXPECT_EQ(zones[0].leases, 0u);
 }
 
 TEST_F(Desk, AClientReleasesOnlyItsOwn) {
-  ASSERT_TRUE(desk.post(1, 10, command_of(Command::Kind::kLease, 0), 0).ok());
+  ASSERT_TRUE(router.post(1, 10, command_of(Command::Kind::kLease, 0), 0).ok());
   answer();
   settle();
   Command release = command_of(Command::Kind::kRelease);
   release.lease = {0, 9, 1};
-  EXPECT_EQ(desk.post(2, 20, release, 0).error().code, ErrorCode::kNotFound);
-  EXPECT_TRUE(desk.post(1, 11, release, 0).ok());
-  EXPECT_EQ(desk.leases(), 0u);
+  EXPECT_EQ(router.post(2, 20, release, 0).error().code, ErrorCode::kNotFound);
+  EXPECT_TRUE(router.post(1, 11, release, 0).ok());
+  EXPECT_EQ(router.leases(), 0u);
 }
 
 TEST_F(Desk, SaysWhichMapsZonesACommandIsOnAndHeedsNoReplyOfAnother) {
-  desk.use(zones, 4);
-  ASSERT_TRUE(desk.post(1, 10, command_of(Command::Kind::kLease), 0).ok());
+  router.use(zones, 4);
+  ASSERT_TRUE(router.post(1, 10, command_of(Command::Kind::kLease), 0).ok());
   Command asked;
   ASSERT_TRUE(commands.pop(asked));
   EXPECT_EQ(asked.map, 4u);
-  desk.map_changed();
-  desk.use(zones, 5);
+  router.map_changed();
+  router.use(zones, 5);
   CommandReply late;
   late.id = asked.id;
   late.map = 4;

@@ -7,29 +7,29 @@
 #include <mutex>
 #include <vector>
 
-#include "runtime/run/run_map.hpp"
+#include "runtime/run/map_version.hpp"
 
 namespace zonepack {
 
 // The maps of a run: the one in use, and another while the map changes. Who works with one holds
 // it; when the last lets go of one that was removed, its memory is free.   Threads: any.
-class MapShelf {
+class MapRegistry {
  public:
-  void add(std::shared_ptr<RunMap> map) {
+  void add(std::shared_ptr<MapVersion> map) {
     const std::lock_guard lock(mutex_);
     maps_.push_back(std::move(map));
   }
 
   // Null when it is gone.
-  std::shared_ptr<RunMap> find(std::uint32_t number) const {
+  std::shared_ptr<MapVersion> find(std::uint32_t number) const {
     const std::lock_guard lock(mutex_);
-    const auto found = std::ranges::find(maps_, number, &RunMap::number);
+    const auto found = std::ranges::find(maps_, number, &MapVersion::number);
     return found == maps_.end() ? nullptr : *found;
   }
 
   // What is expired when nobody holds it any more.
-  std::weak_ptr<RunMap> remove(std::uint32_t number) {
-    const std::weak_ptr<RunMap> removed = find(number);
+  std::weak_ptr<MapVersion> remove(std::uint32_t number) {
+    const std::weak_ptr<MapVersion> removed = find(number);
     const std::lock_guard lock(mutex_);
     std::erase_if(maps_, [&](const auto& map) { return map->number() == number; });
     return removed;
@@ -37,7 +37,7 @@ class MapShelf {
 
  private:
   mutable std::mutex mutex_;
-  std::vector<std::shared_ptr<RunMap>> maps_;
+  std::vector<std::shared_ptr<MapVersion>> maps_;
 };
 
 }  // namespace zonepack

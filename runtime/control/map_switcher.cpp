@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/control/map_run.hpp"
+#include "runtime/control/map_switcher.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -14,13 +14,13 @@ constexpr int kLookAtMost = 256;  // zones, in a cycle, for one to evict
 
 }  // namespace
 
-bool MapRun::offer(MapInUse& next) noexcept {
+bool MapSwitcher::offer(MapInUse& next) noexcept {
   if (next_ != nullptr || unused_ != nullptr) return false;
   next_ = &next;
   return true;
 }
 
-const CycleState& MapRun::run(const CycleInput& input) noexcept {
+const CycleState& MapSwitcher::run(const CycleInput& input) noexcept {
   CycleInput own = input;
   const LoadResult* answer = nullptr;
   if (step_ == Step::kLoading && !input.loads.empty()) {
@@ -46,7 +46,7 @@ const CycleState& MapRun::run(const CycleInput& input) noexcept {
   return map_->cycle.state();
 }
 
-void MapRun::begin(std::int64_t now_ns) noexcept {
+void MapSwitcher::begin(std::int64_t now_ns) noexcept {
   map_->cycle.tell(EventKind::kMapOffered);
   if (map_->memory.frozen()) {
     refuse("frozen");
@@ -64,7 +64,7 @@ void MapRun::begin(std::int64_t now_ns) noexcept {
   step_ = Step::kMakingRoom;
 }
 
-void MapRun::make_room() noexcept {
+void MapSwitcher::make_room() noexcept {
   if (map_->cycle.keeper().loading() || drop_one()) return;
   const ZoneNeed need = zone_ == kNoZone ? ZoneNeed{} : next_->needs[zone_];
   // Here for the new one's tables and zone, there for the old one's tables beside them.
@@ -86,7 +86,7 @@ void MapRun::make_room() noexcept {
 }
 
 // True while there may be more to evict.
-bool MapRun::drop_one() noexcept {
+bool MapSwitcher::drop_one() noexcept {
   const auto zones = static_cast<ZoneId>(map_->needs.size());
   for (int looked = 0; looked < kLookAtMost && looked_at_ < zones; ++looked) {
     const ZoneId zone = looked_at_++;
@@ -95,7 +95,7 @@ bool MapRun::drop_one() noexcept {
   return looked_at_ < zones;
 }
 
-void MapRun::take_load(const LoadResult& result) noexcept {
+void MapSwitcher::take_load(const LoadResult& result) noexcept {
   ZP_REQUIRE(result.zone == zone_);
   if (result.error.code != ErrorCode::kOk) {
     refuse(to_string(result.error.code));
@@ -104,7 +104,7 @@ void MapRun::take_load(const LoadResult& result) noexcept {
   change(result.slots);
 }
 
-void MapRun::change(const SlotChain& slots) noexcept {
+void MapSwitcher::change(const SlotChain& slots) noexcept {
   // The slots of what is left go back before the new map counts them as free.
   if (kept_ != kNoZone) map_->cycle.keeper().drop(kept_);
   if (directory_ != nullptr) {
@@ -112,7 +112,7 @@ void MapRun::change(const SlotChain& slots) noexcept {
     ZP_REQUIRE(begun.ok());
   }
   loader_.use(next_->catalog);
-  next_->memory.count_on(map_->memory.counters());
+  next_->memory.continue_counters(map_->memory.counters());
   const auto tables = next_->memory.set_aside(map_->memory.limits().fixed, 0);
   ZP_REQUIRE(tables.ok());
   next_->cycle.go_on_from(map_->cycle);
@@ -122,7 +122,7 @@ void MapRun::change(const SlotChain& slots) noexcept {
   step_ = Step::kNone;
 }
 
-void MapRun::refuse(const char* reason) noexcept {
+void MapSwitcher::refuse(const char* reason) noexcept {
   map_->memory.give_up_set_aside();
   loader_.use(map_->catalog);
   map_->cycle.keeper().hold(false);

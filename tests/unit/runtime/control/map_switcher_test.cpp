@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/control/map_run.hpp"
+#include "runtime/control/map_switcher.hpp"
 
 #include <gtest/gtest.h>
 
@@ -94,7 +94,7 @@ class MapChange : public testing::Test, public EventSink, public ZoneDirectory, 
   ModelledLoader loader{9, work, {1000, 1000}, this};
   World old_world{loader, *this, *this, 1000};
   World new_world{loader, *this, *this, 1000};
-  MapRun maps{old_world.in_use, loader, this};
+  MapSwitcher maps{old_world.in_use, loader, this};
   std::int64_t now_ns = 1'000'000'000;
 };
 

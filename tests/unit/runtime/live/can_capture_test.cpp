@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/live/can_recorder.hpp"
+#include "runtime/live/can_capture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ CanFrame frame(std::uint32_t id, std::int64_t stamp_ns, std::vector<std::uint8_t
   return made;
 }
 
-class CanRecorderTest : public testing::Test {
+class CanCaptureTest : public testing::Test {
  protected:
   std::string written() {
     EXPECT_TRUE(recorder_.close());
@@ -43,10 +43,10 @@ class CanRecorderTest : public testing::Test {
   test_support::TemporaryFolder folder_;
   std::string path_ = (folder_.path() / "can.log").string();
   SimCanBus bus_;
-  CanRecorder recorder_{bus_, "can0", kOffset};
+  CanCapture recorder_{bus_, "can0", kOffset};
 };
 
-TEST_F(CanRecorderTest, WritesWhatCandumpWrites) {
+TEST_F(CanCaptureTest, WritesWhatCandumpWrites) {
   ASSERT_TRUE(recorder_.open(path_));
   bus_.push(frame(0x311, 1'234'567'890, {0, 0x40, 0xDB}));
   CanFrame extended = frame(0x18FF1234, 1'234'999'999, {});
@@ -72,7 +72,7 @@ TEST_F(CanRecorderTest, WritesWhatCandumpWrites) {
             "(1700000003.000000) can0 20000040#0000000000000000\n");
 }
 
-TEST_F(CanRecorderTest, TellsOfFramesThatWereLostBeforeOne) {
+TEST_F(CanCaptureTest, TellsOfFramesThatWereLostBeforeOne) {
   ASSERT_TRUE(recorder_.open(path_));
   bus_.push(frame(1, 0, {}));
   receive();
@@ -85,7 +85,7 @@ TEST_F(CanRecorderTest, TellsOfFramesThatWereLostBeforeOne) {
             "(1700000000.001000) can0 002#\n");
 }
 
-TEST_F(CanRecorderTest, LosesFramesAndNotTimeWhenTheWriterDoesNotKeepUp) {
+TEST_F(CanCaptureTest, LosesFramesAndNotTimeWhenTheWriterDoesNotKeepUp) {
   ASSERT_TRUE(recorder_.open(path_));
   std::size_t received = 0;
   for (int i = 0; i < 5000; ++i) {
@@ -99,7 +99,7 @@ TEST_F(CanRecorderTest, LosesFramesAndNotTimeWhenTheWriterDoesNotKeepUp) {
   EXPECT_NE(written().find("DROPCOUNT: dropped 904 "), std::string::npos);
 }
 
-TEST_F(CanRecorderTest, GivesBackWhatItRecordedToTheReaderOfLogs) {
+TEST_F(CanCaptureTest, GivesBackWhatItRecordedToTheReaderOfLogs) {
   ASSERT_TRUE(recorder_.open(path_));
   std::vector<CanFrame> sent;
   for (std::uint8_t i = 0; i < 40; ++i) {
@@ -121,7 +121,7 @@ TEST_F(CanRecorderTest, GivesBackWhatItRecordedToTheReaderOfLogs) {
   EXPECT_EQ(reader.summary().broken_lines, 0u);
 }
 
-TEST_F(CanRecorderTest, SaysWhenItCannotWrite) {
+TEST_F(CanCaptureTest, SaysWhenItCannotWrite) {
   EXPECT_EQ(recorder_.open("/nowhere/can.log").error().code, ErrorCode::kIo);
   ASSERT_TRUE(recorder_.open("/dev/full"));
   bus_.push(frame(1, 0, {}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/live/scribe.hpp"
+#include "runtime/live/log_thread.hpp"
 
 #include "platform/clock.hpp"
 
@@ -10,19 +10,19 @@ constexpr std::int64_t kTurn_ns = 2'000'000;
 
 }  // namespace
 
-Result<void> Scribe::start() {
-  auto thread = Thread::start({.name = "zoned-scribe"}, true, [this] { run(); });
+Result<void> LogThread::start() {
+  auto thread = Thread::start({.name = "zoned-log"}, true, [this] { run(); });
   if (!thread) return thread.error();
   thread_ = std::move(thread).value();
   return {};
 }
 
-void Scribe::stop() noexcept {
+void LogThread::stop() noexcept {
   stop_.store(true);
   thread_.join();
 }
 
-void Scribe::run() {
+void LogThread::run() {
   for (bool last = false; !last;) {
     last = stop_.load();
     drain();
@@ -32,7 +32,7 @@ void Scribe::run() {
 }
 
 // No more than there is room for: tasks must have their turn while a fast log is played.
-void Scribe::drain() {
+void LogThread::drain() {
   LiveNote note;
   for (std::size_t left = notes_.capacity(); left > 0 && notes_.pop(note); --left) {
     if (note.kind == LiveNote::Kind::kEvent) {

@@ -20,10 +20,10 @@ namespace zonepack {
 // recording apart. Real-time: receive() adds a copy for each frame; where the writer does not keep
 // up, the recording loses frames, the run none.   Threads: receive(), dropped() and status() by the
 // control thread; the rest by one other.
-class CanRecorder final : public CanBus {
+class CanCapture final : public CanBus {
  public:
   // clock_offset_ns: wall clock minus the clock of the frames' stamps.
-  CanRecorder(CanBus& bus, std::string interface, std::int64_t clock_offset_ns);
+  CanCapture(CanBus& bus, std::string interface, std::int64_t clock_offset_ns);
 
   // kIo with errno: cannot be written. An existing file is replaced.
   Result<void> open(const std::string& path);

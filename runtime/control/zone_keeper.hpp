@@ -14,7 +14,7 @@
 
 namespace zonepack {
 
-struct MapKeeperSettings {
+struct ZoneKeeperSettings {
   // A zone that failed to load is tried again after this, doubled with every further failure.
   std::int64_t first_retry_ns = 1'000'000'000;
   std::int64_t last_retry_ns = 60'000'000'000;
@@ -29,7 +29,7 @@ struct MapKeeperSettings {
 //
 // Real-time: no allocation after construction; a cycle costs O(kMaxWanted^2 + pins) beside one
 // admission.   Threads: owned by the control thread.
-class MapKeeper {
+class ZoneKeeper {
  public:
   static constexpr std::size_t kMaxWanted = 16;
   static constexpr std::size_t kMostPins = 64;  // beside those given at the start
@@ -37,9 +37,9 @@ class MapKeeper {
   // needs: of every zone, by ZoneId. The pinned zones must have been accepted by Residency::pin().
   // directory: told which zones can be read; may be null. References and spans must outlive this
   // object; `pinned` is copied.
-  MapKeeper(Residency& memory, ZoneLoader& loader, EventStamper& events,
-            std::span<const ZoneNeed> needs, std::span<const ZoneId> pinned,
-            ZoneDirectory* directory = nullptr, const MapKeeperSettings& settings = {});
+  ZoneKeeper(Residency& memory, ZoneLoader& loader, EventStamper& events,
+             std::span<const ZoneNeed> needs, std::span<const ZoneId> pinned,
+             ZoneDirectory* directory = nullptr, const ZoneKeeperSettings& settings = {});
 
   // Takes the loader's results; call once a cycle, before keep().
   void collect(std::int64_t now_ns, std::span<const LoadResult> loads) noexcept;
@@ -95,7 +95,7 @@ class MapKeeper {
   std::vector<ZoneId> pinned_;  // capacity for kMostPins more
   std::size_t most_pins_;
   ZoneDirectory* directory_;
-  MapKeeperSettings settings_;
+  ZoneKeeperSettings settings_;
   std::vector<Retry> retries_;
   std::array<ZoneId, kMaxWanted> wanted_{};
   std::size_t wanted_count_ = 0;

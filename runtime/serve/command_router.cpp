@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/serve/command_desk.hpp"
+#include "runtime/serve/command_router.hpp"
 
 #include <algorithm>
 
@@ -12,14 +12,14 @@ bool same(const Lease& a, const Lease& b) noexcept {
 
 }  // namespace
 
-CommandDesk::CommandDesk(SpscQueue<Command>& commands, SpscQueue<CommandReply>& replies)
+CommandRouter::CommandRouter(SpscQueue<Command>& commands, SpscQueue<CommandReply>& replies)
     : commands_(commands), replies_(replies) {
   pending_.reserve(kMostPending);
   held_.reserve(kMostLeases);
   to_release_.reserve(kMostLeases);
 }
 
-bool CommandDesk::hand_over(Command& command) noexcept {
+bool CommandRouter::hand_over(Command& command) noexcept {
   command.id = last_id_ + 1;
   command.map = map_;
   if (!commands_.push(command)) return false;
@@ -27,8 +27,8 @@ bool CommandDesk::hand_over(Command& command) noexcept {
   return true;
 }
 
-Result<void> CommandDesk::post(ClientKey client, std::uint64_t request_id, Command command,
-                               std::int64_t monotonic_ns) {
+Result<void> CommandRouter::post(ClientKey client, std::uint64_t request_id, Command command,
+                                 std::int64_t monotonic_ns) {
   if (pending_.size() == kMostPending) return ErrorCode::kBusy;
   auto held = held_.end();
   if (command.kind == Command::Kind::kRelease) {
@@ -54,8 +54,8 @@ Result<void> CommandDesk::post(ClientKey client, std::uint64_t request_id, Comma
   return {};
 }
 
-void CommandDesk::settle(std::int64_t monotonic_ns, std::int64_t run_ns, std::int64_t lease_ns,
-                         const std::function<void(const Settled&)>& tell) {
+void CommandRouter::settle(std::int64_t monotonic_ns, std::int64_t run_ns, std::int64_t lease_ns,
+                           const std::function<void(const Settled&)>& tell) {
   CommandReply reply;
   while (replies_.pop(reply)) {
     if (reply.map != 0 && reply.map != map_) continue;  // of a map that is gone, like its leases
@@ -90,7 +90,7 @@ void CommandDesk::settle(std::int64_t monotonic_ns, std::int64_t run_ns, std::in
   }
 }
 
-void CommandDesk::note(const Pending& pending, const CommandReply& reply, std::int64_t ends_ns) {
+void CommandRouter::note(const Pending& pending, const CommandReply& reply, std::int64_t ends_ns) {
   if (reply.error.code != ErrorCode::kOk) return;
   switch (pending.settled.kind) {
     case Command::Kind::kPin:
@@ -107,7 +107,7 @@ void CommandDesk::note(const Pending& pending, const CommandReply& reply, std::i
   }
 }
 
-void CommandDesk::client_gone(ClientKey client) {
+void CommandRouter::client_gone(ClientKey client) {
   for (Pending& pending : pending_) {
     if (pending.settled.client == client) pending.settled.client = 0;
   }
@@ -118,20 +118,20 @@ void CommandDesk::client_gone(ClientKey client) {
   }
 }
 
-void CommandDesk::map_changed() {
+void CommandRouter::map_changed() {
   held_.clear();
   to_release_.clear();
   for (Pending& pending : pending_) pending.command_id = 0;
   for (Pending& pending : pending_) pending.give_up_ns = 0;
 }
 
-void CommandDesk::drop_lease(std::size_t index) {
+void CommandRouter::drop_lease(std::size_t index) {
   zones_->add_leases(held_[index].lease.zone, -1);
   held_.erase(held_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
 // One that finds no place any more ends by itself, at its deadline.
-void CommandDesk::release_later(const Lease& lease) {
+void CommandRouter::release_later(const Lease& lease) {
   if (to_release_.size() < kMostLeases) to_release_.push_back(lease);
 }
 

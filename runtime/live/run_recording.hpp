@@ -23,19 +23,19 @@ struct RecorderChoice {
 
 // The recordings of a live run: the one that was asked for, and the flight recorder's.
 //
-// Threads: tap() by the control thread; on_event() and drain() by the scribe; flight() by any;
+// Threads: tap() by the control thread; on_event() and drain() by the log thread; flight() by any;
 // the rest while neither runs.
-class LiveRecorder final : public EventSink {
+class RunRecording final : public EventSink {
  public:
   // Passes events on to `next`.
-  explicit LiveRecorder(EventSink& next) : next_(next) {}
+  explicit RunRecording(EventSink& next) : next_(next) {}
 
   // Before the threads start. False when the file that was asked for cannot be written, with a
   // complete message in `fault`; a flight recorder that cannot is a warning.
   bool open(const RecorderChoice& choice, const RecordingPreface& preface, std::size_t zones,
             std::uint32_t most_frames, std::string& fault, std::vector<std::string>& warnings);
 
-  // The map that events are of from here on. The scribe.
+  // The map that events are of from here on. The log thread.
   void change_map(std::uint32_t number, std::size_t zones) {
     if (writer_) writer_->change_map(number, zones);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/live/event_teller.hpp"
+#include "runtime/live/event_messages.hpp"
 
 #include <iostream>
 #include <string>
@@ -46,7 +46,7 @@ std::string line_of(const Event& event, const Catalog& catalog) {
 
 }  // namespace
 
-void EventTeller::on_event(const Event& event) noexcept {
+void EventMessages::on_event(const Event& event) noexcept {
   next_.on_event(event);
   const std::string line = line_of(event, maps_.map().catalog());
   if (!line.empty()) std::cerr << "zoned: " + line + "\n";

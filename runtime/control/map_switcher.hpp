@@ -36,12 +36,12 @@ struct MapInUse {
 // old map stays, its zones are loaded again, and the event says why. The budget holds throughout.
 //
 // Invariant, real-time, threads: as of Cycle.
-class MapRun {
+class MapSwitcher {
  public:
   static constexpr std::int64_t kMostWait_ns = 30'000'000'000;
 
   // Both outlive this object; `directory` may be null.
-  MapRun(MapInUse& map, ZoneLoader& loader, ZoneDirectory* directory) noexcept
+  MapSwitcher(MapInUse& map, ZoneLoader& loader, ZoneDirectory* directory) noexcept
       : map_(&map), loader_(loader), directory_(directory) {}
 
   // A cycle. What the loader answers for a map on offer is taken out of `input.loads`. An offer in

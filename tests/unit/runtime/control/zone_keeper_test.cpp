@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/control/map_keeper.hpp"
+#include "runtime/control/zone_keeper.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ class Keeper : public testing::Test, public EventSink, public ZoneFiller {
         needs.size(), ResidencyLimits{ByteCount{slots} * 100, 0, 100, 0, {4, 4}, 0});
     for (const ZoneId zone : pinned) ASSERT_TRUE(memory->pin(zone, needs[zone]).ok());
     loader = std::make_unique<ModelledLoader>(slots, work, LoadRates{1000, 1000}, this);
-    keeper = std::make_unique<MapKeeper>(*memory, *loader, events, needs, pinned);
+    keeper = std::make_unique<ZoneKeeper>(*memory, *loader, events, needs, pinned);
   }
 
   void on_event(const Event& event) noexcept override {
@@ -58,7 +58,7 @@ class Keeper : public testing::Test, public EventSink, public ZoneFiller {
   EventStamper events{*this};
   std::unique_ptr<Residency> memory;
   std::unique_ptr<ModelledLoader> loader;
-  std::unique_ptr<MapKeeper> keeper;
+  std::unique_ptr<ZoneKeeper> keeper;
   std::int64_t now = 0;
   Log log;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/live/bus_teller.hpp"
+#include "runtime/live/bus_messages.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,22 +8,23 @@
 namespace zonepack {
 namespace {
 
-TEST(BusTeller, TellsOnlyChanges) {
-  BusTeller teller("can0");
-  EXPECT_FALSE(teller.tell({}));
-  EXPECT_EQ(teller.tell({.link = CanLink::kDown}), "can0: down; no odometry until it is up again");
-  EXPECT_FALSE(teller.tell({.link = CanLink::kDown}));
-  EXPECT_EQ(teller.tell({.link = CanLink::kUp}), "can0: up");
-  EXPECT_EQ(teller.tell({.dropped = 3}), "can0: 3 frames lost before they were read");
-  EXPECT_EQ(teller.tell({.dropped = 5}), "can0: 2 frames lost before they were read");
+TEST(BusMessages, TellsOnlyChanges) {
+  BusMessages messages("can0");
+  EXPECT_FALSE(messages.next({}));
+  EXPECT_EQ(messages.next({.link = CanLink::kDown}),
+            "can0: down; no odometry until it is up again");
+  EXPECT_FALSE(messages.next({.link = CanLink::kDown}));
+  EXPECT_EQ(messages.next({.link = CanLink::kUp}), "can0: up");
+  EXPECT_EQ(messages.next({.dropped = 3}), "can0: 3 frames lost before they were read");
+  EXPECT_EQ(messages.next({.dropped = 5}), "can0: 2 frames lost before they were read");
 }
 
-TEST(BusTeller, TellsOfABusOffAndTheWayOutOfIt) {
-  BusTeller teller("can0");
-  const auto off = teller.tell({.state = CanBusState::kOff, .bus_offs = 1});
+TEST(BusMessages, TellsOfABusOffAndTheWayOutOfIt) {
+  BusMessages messages("can0");
+  const auto off = messages.next({.state = CanBusState::kOff, .bus_offs = 1});
   ASSERT_TRUE(off);
   EXPECT_NE(off->find("restart-ms"), std::string::npos);
-  EXPECT_EQ(teller.tell({.bus_offs = 1, .restarts = 1}),
+  EXPECT_EQ(messages.next({.bus_offs = 1, .restarts = 1}),
             "can0: the controller is error active; restarted after a bus-off");
 }
 

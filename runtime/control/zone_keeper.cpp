@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/control/map_keeper.hpp"
+#include "runtime/control/zone_keeper.hpp"
 
 #include <algorithm>
 
@@ -7,9 +7,9 @@
 
 namespace zonepack {
 
-MapKeeper::MapKeeper(Residency& memory, ZoneLoader& loader, EventStamper& events,
-                     std::span<const ZoneNeed> needs, std::span<const ZoneId> pinned,
-                     ZoneDirectory* directory, const MapKeeperSettings& settings)
+ZoneKeeper::ZoneKeeper(Residency& memory, ZoneLoader& loader, EventStamper& events,
+                       std::span<const ZoneNeed> needs, std::span<const ZoneId> pinned,
+                       ZoneDirectory* directory, const ZoneKeeperSettings& settings)
     : memory_(memory),
       loader_(loader),
       events_(events),
@@ -23,7 +23,7 @@ MapKeeper::MapKeeper(Residency& memory, ZoneLoader& loader, EventStamper& events
   pinned_.assign(pinned.begin(), pinned.end());
 }
 
-void MapKeeper::collect(std::int64_t now_ns, std::span<const LoadResult> loads) noexcept {
+void ZoneKeeper::collect(std::int64_t now_ns, std::span<const LoadResult> loads) noexcept {
   for (const LoadResult& result : loads) {
     ZP_REQUIRE(result.zone == loading_);
     loading_ = kNoZone;
@@ -44,7 +44,7 @@ void MapKeeper::collect(std::int64_t now_ns, std::span<const LoadResult> loads) 
   memory_.expire_leases(now_ns);
 }
 
-Result<void> MapKeeper::pin(ZoneId zone) noexcept {
+Result<void> ZoneKeeper::pin(ZoneId zone) noexcept {
   if (memory_.pinned(zone)) return {};
   if (pinned_.size() == most_pins_) return {ErrorCode::kNoRoom, needs_[zone].slots};
   if (const auto accepted = memory_.pin(zone, needs_[zone]); !accepted) return accepted;
@@ -52,13 +52,13 @@ Result<void> MapKeeper::pin(ZoneId zone) noexcept {
   return {};
 }
 
-void MapKeeper::unpin(ZoneId zone) noexcept {
+void ZoneKeeper::unpin(ZoneId zone) noexcept {
   if (!memory_.pinned(zone)) return;
   memory_.unpin(zone);
   std::erase(pinned_, zone);
 }
 
-void MapKeeper::fail(ZoneId zone, ErrorCode code, std::int64_t now_ns) noexcept {
+void ZoneKeeper::fail(ZoneId zone, ErrorCode code, std::int64_t now_ns) noexcept {
   Retry& retry = retries_[zone];
   std::int64_t wait_ns = settings_.first_retry_ns;
   for (std::uint32_t i = 0; i < retry.failures && wait_ns < settings_.last_retry_ns; ++i) {
@@ -69,8 +69,8 @@ void MapKeeper::fail(ZoneId zone, ErrorCode code, std::int64_t now_ns) noexcept 
   emit(EventKind::kLoadFailed, zone, to_string(code));
 }
 
-void MapKeeper::keep(std::int64_t now_ns, std::span<const ZoneId> wanted,
-                     std::size_t urgent) noexcept {
+void ZoneKeeper::keep(std::int64_t now_ns, std::span<const ZoneId> wanted,
+                      std::size_t urgent) noexcept {
   ZP_REQUIRE(wanted.size() <= kMaxWanted);
   drop_unwanted(wanted);
   does_not_fit_ = kNoZone;
@@ -83,11 +83,11 @@ void MapKeeper::keep(std::int64_t now_ns, std::span<const ZoneId> wanted,
   wanted_count_ = wanted.size();
 }
 
-bool MapKeeper::wants(std::span<const ZoneId> list, ZoneId zone) const noexcept {
+bool ZoneKeeper::wants(std::span<const ZoneId> list, ZoneId zone) const noexcept {
   return std::find(list.begin(), list.end(), zone) != list.end();
 }
 
-void MapKeeper::drop_unwanted(std::span<const ZoneId> wanted) noexcept {
+void ZoneKeeper::drop_unwanted(std::span<const ZoneId> wanted) noexcept {
   // The most urgent last, which leaves it the warmest.
   for (std::size_t i = wanted_count_; i-- > 0;) {
     const ZoneId zone = wanted_[i];
@@ -101,8 +101,8 @@ void MapKeeper::drop_unwanted(std::span<const ZoneId> wanted) noexcept {
   if (loading_ != kNoZone && !wants(wanted, loading_) && !memory_.pinned(loading_)) cancel_load();
 }
 
-void MapKeeper::see_to(std::size_t place, std::span<const ZoneId> wanted, bool urgent,
-                       std::int64_t now_ns) noexcept {
+void ZoneKeeper::see_to(std::size_t place, std::span<const ZoneId> wanted, bool urgent,
+                        std::int64_t now_ns) noexcept {
   const ZoneId zone = wanted[place];
   const bool own = place == 0;
   memory_.protect(zone);
@@ -116,7 +116,7 @@ void MapKeeper::see_to(std::size_t place, std::span<const ZoneId> wanted, bool u
   if (does_not_fit_ == kNoZone) does_not_fit_ = zone;
 }
 
-bool MapKeeper::may_start(ZoneId zone, bool own, std::int64_t now_ns) noexcept {
+bool ZoneKeeper::may_start(ZoneId zone, bool own, std::int64_t now_ns) noexcept {
   if (held_) return false;
   if (now_ns < retries_[zone].not_before_ns) return false;
   if (loading_ == kNoZone) return true;
@@ -124,14 +124,14 @@ bool MapKeeper::may_start(ZoneId zone, bool own, std::int64_t now_ns) noexcept {
   return false;
 }
 
-void MapKeeper::keep_pinned(std::int64_t now_ns) noexcept {
+void ZoneKeeper::keep_pinned(std::int64_t now_ns) noexcept {
   for (const ZoneId zone : pinned_) {
     if (memory_.state(zone) != ZoneState::kAbsent || !may_start(zone, false, now_ns)) continue;
     if (!admit(zone, Purpose::kApproach) && does_not_fit_ == kNoZone) does_not_fit_ = zone;
   }
 }
 
-Result<std::size_t> MapKeeper::admit(ZoneId zone, Purpose purpose) noexcept {
+Result<std::size_t> ZoneKeeper::admit(ZoneId zone, Purpose purpose) noexcept {
   const auto result = memory_.admit(zone, needs_[zone], purpose, [this](const Eviction& evicted) {
     if (directory_ != nullptr) directory_->withdraw(evicted.zone);
     loader_.take_back(evicted.slots);
@@ -145,7 +145,7 @@ Result<std::size_t> MapKeeper::admit(ZoneId zone, Purpose purpose) noexcept {
   return result;
 }
 
-bool MapKeeper::drop(ZoneId zone) noexcept {
+bool ZoneKeeper::drop(ZoneId zone) noexcept {
   const auto evicted = memory_.drop(zone);
   if (!evicted) return false;
   if (directory_ != nullptr) directory_->withdraw(zone);
@@ -154,7 +154,7 @@ bool MapKeeper::drop(ZoneId zone) noexcept {
   return true;
 }
 
-void MapKeeper::take_over(ZoneId zone, const SlotChain& slots) noexcept {
+void ZoneKeeper::take_over(ZoneId zone, const SlotChain& slots) noexcept {
   const auto admitted =
       memory_.admit(zone, needs_[zone], Purpose::kOwnZone, [](const Eviction&) {});
   ZP_REQUIRE(admitted && *admitted == 0);
@@ -164,13 +164,13 @@ void MapKeeper::take_over(ZoneId zone, const SlotChain& slots) noexcept {
   emit(EventKind::kLoadDone, zone);
 }
 
-void MapKeeper::cancel_load() noexcept {
+void ZoneKeeper::cancel_load() noexcept {
   if (!memory_.cancel(loading_)) return;
   loader_.cancel();
   emit(EventKind::kLoadCancelled, loading_);
 }
 
-void MapKeeper::set_blocked(ZoneId zone) noexcept {
+void ZoneKeeper::set_blocked(ZoneId zone) noexcept {
   if (zone == blocked_) return;
   if (zone != kNoZone) {
     emit(EventKind::kBlocked, zone);
@@ -180,7 +180,7 @@ void MapKeeper::set_blocked(ZoneId zone) noexcept {
   blocked_ = zone;
 }
 
-void MapKeeper::emit(EventKind kind, ZoneId zone, const char* reason) noexcept {
+void ZoneKeeper::emit(EventKind kind, ZoneId zone, const char* reason) noexcept {
   Event event;
   event.kind = kind;
   event.zone = zone;

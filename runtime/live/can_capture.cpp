@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/live/can_recorder.hpp"
+#include "runtime/live/can_capture.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -16,20 +16,20 @@ constexpr std::int64_t kFlush_ns = 1'000'000'000;
 
 }  // namespace
 
-CanRecorder::CanRecorder(CanBus& bus, std::string interface, std::int64_t clock_offset_ns)
+CanCapture::CanCapture(CanBus& bus, std::string interface, std::int64_t clock_offset_ns)
     : bus_(bus),
       interface_(std::move(interface)),
       clock_offset_ns_(clock_offset_ns),
       items_(kFrames),
       line_(kCanLogLineRoom + interface_.size() + 1, '\0') {}
 
-Result<void> CanRecorder::open(const std::string& path) {
+Result<void> CanCapture::open(const std::string& path) {
   file_.reset(std::fopen(path.c_str(), "wb"));
   if (!file_) return {ErrorCode::kIo, errno};
   return {};
 }
 
-std::size_t CanRecorder::receive(std::span<CanFrame> into) noexcept {
+std::size_t CanCapture::receive(std::span<CanFrame> into) noexcept {
   const std::size_t count = bus_.receive(into);
   for (const CanFrame& frame : into.first(count)) {
     not_kept_ += !items_.push({frame, bus_.dropped() + not_kept_});
@@ -37,19 +37,19 @@ std::size_t CanRecorder::receive(std::span<CanFrame> into) noexcept {
   return count;
 }
 
-void CanRecorder::put(std::string_view text) {
+void CanCapture::put(std::string_view text) {
   if (error_ != 0) return;
   if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) error_ = errno;
 }
 
-void CanRecorder::note_losses(std::uint64_t lost) {
+void CanCapture::note_losses(std::uint64_t lost) {
   if (lost == lost_told_) return;
   put("DROPCOUNT: dropped " + std::to_string(lost - lost_told_) + " CAN frames on '" + interface_ +
       "' socket (total drops " + std::to_string(lost) + ")\n");
   lost_told_ = lost;
 }
 
-void CanRecorder::write() {
+void CanCapture::write() {
   Item item;
   for (std::size_t left = items_.size(); left > 0 && items_.pop(item); --left) {
     note_losses(item.lost_before);
@@ -64,7 +64,7 @@ void CanRecorder::write() {
   flushed_ns_ = now_ns;
 }
 
-Result<void> CanRecorder::close() {
+Result<void> CanCapture::close() {
   write();
   if (file_ && std::fclose(file_.release()) != 0 && error_ == 0) error_ = errno;
   if (error_ != 0) return {ErrorCode::kIo, error_};

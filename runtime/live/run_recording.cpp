@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/live/live_recorder.hpp"
+#include "runtime/live/run_recording.hpp"
 
 #include <cstring>
 
@@ -17,7 +17,7 @@ std::string reason(const Error& error) {
 
 }  // namespace
 
-bool LiveRecorder::open(const RecorderChoice& choice, const RecordingPreface& preface,
+bool RunRecording::open(const RecorderChoice& choice, const RecordingPreface& preface,
                         std::size_t zones, std::uint32_t most_frames, std::string& fault,
                         std::vector<std::string>& warnings) {
   if (!choice.file.empty()) {
@@ -48,16 +48,16 @@ bool LiveRecorder::open(const RecorderChoice& choice, const RecordingPreface& pr
   return true;
 }
 
-void LiveRecorder::on_event(const Event& event) noexcept {
+void RunRecording::on_event(const Event& event) noexcept {
   if (writer_) writer_->on_event(event);
   next_.on_event(event);
 }
 
-void LiveRecorder::drain() {
+void RunRecording::drain() {
   if (writer_) writer_->drain(monotonic_ns());
 }
 
-std::optional<std::string> LiveRecorder::finish(const std::string& event_log_hash) {
+std::optional<std::string> RunRecording::finish(const std::string& event_log_hash) {
   if (!writer_) return std::nullopt;
   writer_->flush();
   if (!file_) return std::nullopt;

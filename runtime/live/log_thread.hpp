@@ -8,8 +8,8 @@
 #include "platform/realtime.hpp"
 #include "platform/spsc_queue.hpp"
 #include "runtime/live/live_notes.hpp"
-#include "runtime/run/run_map.hpp"
-#include "runtime/run/run_recorder.hpp"
+#include "runtime/run/map_version.hpp"
+#include "runtime/run/run_statistics.hpp"
 
 namespace zonepack {
 
@@ -17,13 +17,13 @@ namespace zonepack {
 // does what others give it to do regularly (recordings, saved state), so that neither the control
 // thread nor the server waits for a disk.
 //
-// Threads: the recorder, and all tasks, are the scribe's between start() and stop().
-class Scribe {
+// Threads: the recorder, and all tasks, are the log thread's between start() and stop().
+class LogThread {
  public:
   // maps: is told of each note's before the recorder gets it. All outlive this object.
-  Scribe(SpscQueue<LiveNote>& notes, MapFollower& maps, RunRecorder& recorder)
+  LogThread(SpscQueue<LiveNote>& notes, MapFollower& maps, RunStatistics& recorder)
       : notes_(notes), maps_(maps), recorder_(recorder) {}
-  ~Scribe() { stop(); }
+  ~LogThread() { stop(); }
 
   // A task is called every few milliseconds, and once more while stopping. Before start().
   void add_task(std::function<void()> task) { tasks_.push_back(std::move(task)); }
@@ -38,7 +38,7 @@ class Scribe {
 
   SpscQueue<LiveNote>& notes_;
   MapFollower& maps_;
-  RunRecorder& recorder_;
+  RunStatistics& recorder_;
   std::vector<std::function<void()>> tasks_;
   std::atomic<bool> stop_{false};
   Thread thread_;

@@ -18,7 +18,7 @@ namespace zonepack {
 // The control thread is never waited for: a full queue refuses the command, an answer that does not
 // come in kPatience_ns is given up. Threads: one, the server's. Bounds: kMostPending commands,
 // kMostLeases leases.
-class CommandDesk {
+class CommandRouter {
  public:
   static constexpr std::size_t kMostPending = 256;
   static constexpr std::size_t kMostLeases = 1024;
@@ -34,7 +34,7 @@ class CommandDesk {
     CommandReply reply;
   };
 
-  CommandDesk(SpscQueue<Command>& commands, SpscQueue<CommandReply>& replies);
+  CommandRouter(SpscQueue<Command>& commands, SpscQueue<CommandReply>& replies);
 
   // The table of the map in use, told of pins and leases, and the map's number.
   void use(ZoneTable& zones, std::uint32_t map) noexcept {

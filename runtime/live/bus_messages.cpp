@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/live/bus_teller.hpp"
+#include "runtime/live/bus_messages.hpp"
 
 namespace zonepack {
 namespace {
@@ -35,7 +35,7 @@ std::string state_text(CanBusState state) {
 
 }  // namespace
 
-std::optional<std::string> BusTeller::tell(const CanBusStatus& status) {
+std::optional<std::string> BusMessages::next(const CanBusStatus& status) {
   std::string text;
   const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
   if (status.link != told_.link) add(link_text(status.link));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/run/run_recorder.hpp"
+#include "runtime/run/run_statistics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ class Recorder : public testing::Test {
   const TruthTrack truth{{{0, {2, 2, 0}}, {4'000'000'000, {6, 2, 0}}}};
   const ResidencyLimits limits{1000, 200, 100, 25, {}, 0};
   Residency memory{3, limits};
-  RunRecorder recorder{graph, needs, &truth, kPeriod_ns, limits, log};
+  RunStatistics recorder{graph, needs, &truth, kPeriod_ns, limits, log};
   std::int64_t now_ns = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/run/run_recorder.hpp"
+#include "runtime/run/run_statistics.hpp"
 
 #include <algorithm>
 
@@ -22,9 +22,9 @@ CycleRecord record_of(std::int64_t now_ns, const CycleState& state, const Reside
           memory.charged()};
 }
 
-RunRecorder::RunRecorder(const ZoneGraph& graph, std::span<const ZoneNeed> needs,
-                         const TruthTrack* truth, std::int64_t period_ns,
-                         const ResidencyLimits& limits, EventSink& log)
+RunStatistics::RunStatistics(const ZoneGraph& graph, std::span<const ZoneNeed> needs,
+                             const TruthTrack* truth, std::int64_t period_ns,
+                             const ResidencyLimits& limits, EventSink& log)
     : graph_(&graph),
       needs_(needs),
       truth_(truth),
@@ -33,8 +33,8 @@ RunRecorder::RunRecorder(const ZoneGraph& graph, std::span<const ZoneNeed> needs
       log_(log),
       held_(needs.size(), Held::kNot) {}
 
-void RunRecorder::change_map(const ZoneGraph& graph, std::span<const ZoneNeed> needs,
-                             const ResidencyLimits& limits) {
+void RunStatistics::change_map(const ZoneGraph& graph, std::span<const ZoneNeed> needs,
+                               const ResidencyLimits& limits) {
   if (drawn_names_.empty()) {
     for (ZoneId zone = 0; zone < needs_.size(); ++zone) drawn_names_.push_back(graph_->name(zone));
   }
@@ -52,16 +52,16 @@ void RunRecorder::change_map(const ZoneGraph& graph, std::span<const ZoneNeed> n
 }
 
 // As the drawing names it.
-ZoneId RunRecorder::drawn(ZoneId zone) const noexcept {
+ZoneId RunStatistics::drawn(ZoneId zone) const noexcept {
   return drawn_names_.empty() || zone == kNoZone ? zone : drawn_[zone];
 }
 
-void RunRecorder::begin_with(ZoneId zone) noexcept {
+void RunStatistics::begin_with(ZoneId zone) noexcept {
   held_[zone] = Held::kResident;
   charged_.add(needs_[zone]);
 }
 
-void RunRecorder::on_event(const Event& event) noexcept {
+void RunStatistics::on_event(const Event& event) noexcept {
   log_.on_event(event);
   if (keeps_trace_) {
     trace_.events.push_back(
@@ -86,7 +86,7 @@ void RunRecorder::on_event(const Event& event) noexcept {
   }
 }
 
-void RunRecorder::after_cycle(const CycleRecord& cycle) {
+void RunStatistics::after_cycle(const CycleRecord& cycle) {
   if (cycles_ == 0) start_ns_ = cycle.now_ns;
   now_ns_ = cycle.now_ns;
   ++cycles_;
@@ -102,7 +102,7 @@ void RunRecorder::after_cycle(const CycleRecord& cycle) {
   if (keeps_trace_) keep_sample(cycle);
 }
 
-void RunRecorder::check_limits(const CycleRecord& cycle) {
+void RunStatistics::check_limits(const CycleRecord& cycle) {
   peak_.slots = std::max(peak_.slots, charged_.slots);
   peak_.signatures = std::max(peak_.signatures, charged_.signatures);
   peak_bytes_ = std::max(peak_bytes_, cycle.charged_bytes);
@@ -115,7 +115,7 @@ void RunRecorder::check_limits(const CycleRecord& cycle) {
   violations_ += over_bytes || over_signatures || differs;
 }
 
-void RunRecorder::watch_zone(const CycleRecord& cycle) {
+void RunStatistics::watch_zone(const CycleRecord& cycle) {
   const CycleState& state = cycle.state;
   true_pose_ = truth_ != nullptr ? truth_->at(now_ns_) : std::nullopt;
   ZoneId own = state.zone;
@@ -134,7 +134,7 @@ void RunRecorder::watch_zone(const CycleRecord& cycle) {
   absent_cycles_ += absent_;
 }
 
-void RunRecorder::keep_sample(const CycleRecord& cycle) {
+void RunStatistics::keep_sample(const CycleRecord& cycle) {
   const CycleState& state = cycle.state;
   TraceSample sample;
   sample.t_s = static_cast<double>(now_ns_ - start_ns_) * 1e-9;
@@ -166,11 +166,11 @@ void RunRecorder::keep_sample(const CycleRecord& cycle) {
   trace_.samples.push_back(sample);
 }
 
-double RunRecorder::seconds(std::uint64_t cycles) const noexcept {
+double RunStatistics::seconds(std::uint64_t cycles) const noexcept {
   return static_cast<double>(cycles) * static_cast<double>(period_ns_) / 1e9;
 }
 
-void RunRecorder::summarise(RunSummary& summary) const {
+void RunStatistics::summarise(RunSummary& summary) const {
   summary.budget_bytes = limits_.budget;
   summary.peak_charged_bytes =
       std::max(limits_.fixed + peak_.slots * limits_.slot_bytes, peak_bytes_);

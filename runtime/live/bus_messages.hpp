@@ -9,12 +9,12 @@
 namespace zonepack {
 
 // Puts changes of a bus into words for a log.
-class BusTeller {
+class BusMessages {
  public:
-  explicit BusTeller(std::string interface) : interface_(std::move(interface)) {}
+  explicit BusMessages(std::string interface) : interface_(std::move(interface)) {}
 
   // A line when link or state changed or frames were lost since the last call.
-  std::optional<std::string> tell(const CanBusStatus& status);
+  std::optional<std::string> next(const CanBusStatus& status);
 
  private:
   std::string interface_;

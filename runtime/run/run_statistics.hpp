@@ -33,11 +33,11 @@ CycleRecord record_of(std::int64_t now_ns, const CycleState& state, const Reside
 // believe the sums that Residency keeps: a cycle in which the two differ is a violation, like one
 // over a limit. The robot's own zone is the zone that holds its true position (on no zone's ground
 // the one before), or the tracker's where there is no truth.   Threads: one; allocates.
-class RunRecorder final : public EventSink {
+class RunStatistics final : public EventSink {
  public:
   // truth may be null; everything must outlive this object. Events are passed on to `log`.
-  RunRecorder(const ZoneGraph& graph, std::span<const ZoneNeed> needs, const TruthTrack* truth,
-              std::int64_t period_ns, const ResidencyLimits& limits, EventSink& log);
+  RunStatistics(const ZoneGraph& graph, std::span<const ZoneNeed> needs, const TruthTrack* truth,
+                std::int64_t period_ns, const ResidencyLimits& limits, EventSink& log);
 
   // Another map is in use from the next event on. Drawings stay on the first one's ground; its
   // zones go by their names there.

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "runtime/control/cycle.hpp"
-#include "runtime/control/map_run.hpp"
-#include "runtime/run/driven_map.hpp"
+#include "runtime/control/map_switcher.hpp"
+#include "runtime/run/map_model.hpp"
 
 namespace zonepack {
 
@@ -17,12 +17,12 @@ namespace zonepack {
 // changes there is another.
 //
 // Threads: what is const, by any; memory and cycle are the control thread's while it has the map.
-class RunMap {
+class MapVersion {
  public:
   // number: in the run, from 1. Null when it cannot be held on these terms, with a complete message
   // in `fault`.
-  static std::shared_ptr<RunMap> make(std::uint32_t number, Catalog catalog, const MapTerms& terms,
-                                      std::string& fault);
+  static std::shared_ptr<MapVersion> make(std::uint32_t number, Catalog catalog,
+                                          const MapTerms& terms, std::string& fault);
 
   // Makes memory and cycle; all that is referred to outlives this object. False with a complete
   // message in `fault`.
@@ -31,7 +31,7 @@ class RunMap {
 
   std::uint32_t number() const noexcept { return number_; }
   const Catalog& catalog() const noexcept { return catalog_; }
-  const DrivenMap& driven() const noexcept { return *driven_; }
+  const MapModel& model() const noexcept { return *model_; }
 
   // After prepare().
   Residency& memory() noexcept { return *memory_; }
@@ -39,11 +39,12 @@ class RunMap {
   MapInUse& in_use() noexcept { return *in_use_; }
 
  private:
-  RunMap(std::uint32_t number, Catalog catalog) : number_(number), catalog_(std::move(catalog)) {}
+  MapVersion(std::uint32_t number, Catalog catalog)
+      : number_(number), catalog_(std::move(catalog)) {}
 
   std::uint32_t number_;
   Catalog catalog_;
-  std::unique_ptr<DrivenMap> driven_;
+  std::unique_ptr<MapModel> model_;
   std::optional<Residency> memory_;
   std::optional<Cycle> cycle_;
   std::optional<MapInUse> in_use_;
@@ -53,20 +54,20 @@ class RunMap {
 // Threads: one.
 class MapFollower {
  public:
-  using Find = std::function<std::shared_ptr<const RunMap>(std::uint32_t number)>;
-  using Change = std::function<void(const RunMap& map)>;
+  using Find = std::function<std::shared_ptr<const MapVersion>(std::uint32_t number)>;
+  using Change = std::function<void(const MapVersion& map)>;
 
   // find: a map that is in use or on offer. change: is told of every other map than `first`.
-  MapFollower(std::shared_ptr<const RunMap> first, Find find, Change change)
+  MapFollower(std::shared_ptr<const MapVersion> first, Find find, Change change)
       : map_(std::move(first)), find_(std::move(find)), change_(std::move(change)) {}
 
-  const RunMap& map() const noexcept { return *map_; }
+  const MapVersion& map() const noexcept { return *map_; }
 
   // Before what comes next is taken: it is of the map of this number.
   void follow(std::uint32_t number);
 
  private:
-  std::shared_ptr<const RunMap> map_;
+  std::shared_ptr<const MapVersion> map_;
   Find find_;
   Change change_;
 };

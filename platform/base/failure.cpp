@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "platform/base/failure.hpp"
+
+#include <cstring>
+
+namespace zonepack {
+
+Failure cannot_write(const std::string& file, const Error& error) {
+  return {error.code, file + ": cannot be written: " + reason_text(error)};
+}
+
+std::string reason_text(const Error& error) {
+  if (error.code == ErrorCode::kIo && error.detail != 0) {
+    return std::strerror(static_cast<int>(error.detail));
+  }
+  return to_string(error.code);
+}
+
+int exit_code(const Failure& failure) noexcept { return failure.code == ErrorCode::kUsage ? 2 : 1; }
+
+}  // namespace zonepack

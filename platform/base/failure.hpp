@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "platform/base/result.hpp"
+
+namespace zonepack {
+
+// Why something above the control path could not be done: a code for programs, and a complete
+// message for people. It names the file, zone, key, line or pin, what was expected, and what to do
+// next; it neither begins with the program's name nor ends with a line feed.
+struct [[nodiscard]] Failure {
+  ErrorCode code = ErrorCode::kOk;
+  std::string message;
+};
+
+// A value, or the failure that is to be shown to the user. Messages allocate: not for the control
+// thread, which returns Result<T>.
+template <typename T>
+using Outcome = Result<T, Failure>;
+
+// What is wrong with the input or the world.
+inline Failure failure(std::string message, ErrorCode code = ErrorCode::kBadValue) {
+  return {code, std::move(message)};
+}
+
+// What is wrong with the command line.
+inline Failure usage_failure(std::string message) {
+  return {ErrorCode::kUsage, std::move(message)};
+}
+
+// "FILE: cannot be written: permission denied", with errno's text where there is one.
+Failure cannot_write(const std::string& file, const Error& error);
+
+// The error's word ("bad checksum"), or errno's text for kIo.
+std::string reason_text(const Error& error);
+
+// What a program ends with: 2 for the command line, 1 for all else.
+int exit_code(const Failure& failure) noexcept;
+
+}  // namespace zonepack
