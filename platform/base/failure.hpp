@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "platform/base/result.hpp"
@@ -39,5 +40,8 @@ std::string reason_text(const Error& error);
 
 // What a program ends with: 2 for the command line, 1 for all else.
 int exit_code(const Failure& failure) noexcept;
+
+// Prints "PROGRAM: message" to standard error, and returns the exit code.
+int report_failure(std::string_view program, const Failure& failure);
 
 }  // namespace zonepack

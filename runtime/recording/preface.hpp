@@ -12,15 +12,9 @@
 #include "runtime/pack_format/limits.hpp"
 #include "runtime/recording/bytes.hpp"
 #include "runtime/run/map_model.hpp"
+#include "runtime/run/run_start.hpp"
 
 namespace zonepack {
-
-// A start that the cycle was told before its first run: Cycle::start_at().
-struct RecordedStart {
-  std::int64_t now_ns = 0;
-  Pose2 T_map_base;
-  std::optional<double> sigma_m, sigma_rad;  // both or none: as the settings say
-};
 
 // What a run decides on beside the inputs of its cycles, so that a recording needs neither map nor
 // settings file.
@@ -33,7 +27,7 @@ struct RecordingPreface {
   std::string map_folder;           // for messages
   std::vector<std::byte> manifest;  // the file's bytes
   MapTerms terms;                   // as the run had them, command line included
-  std::optional<RecordedStart> start;
+  std::optional<RunStart> start;
 };
 
 // Hands over the blocks that hold the preface, in order.
