@@ -40,16 +40,11 @@ Outcome<void> write_results(const ReplayArguments& arguments, const Catalog& cat
   const std::string& source = arguments.can.empty() ? arguments.recording : arguments.can;
   const RunReportInput run{catalog.folder, source, result.summary, result.trace, baseline};
   if (!arguments.picture.empty()) {
-    if (const auto problem = report::write_report(arguments.picture, make_run_picture(run))) {
-      return failure(*problem);
-    }
+    auto drawn = report::write_report(arguments.picture, make_run_picture(run));
+    if (!drawn) return drawn;
   }
-  if (!arguments.report.empty()) {
-    if (const auto problem = report::write_report(arguments.report, make_run_report(run))) {
-      return failure(*problem);
-    }
-  }
-  return {};
+  if (arguments.report.empty()) return {};
+  return report::write_report(arguments.report, make_run_report(run));
 }
 
 // The end of a replay that worked: results, and whether a limit was exceeded.
@@ -62,9 +57,8 @@ Outcome<void> conclude(const ReplayArguments& arguments, const Catalog& catalog,
 }
 
 Outcome<void> replay_from_recording(const ReplayArguments& arguments) {
-  std::string fault;
-  auto recording = RecordingReader::open(arguments.recording, fault);
-  if (!recording) return failure(fault);
+  auto recording = RecordingReader::open(arguments.recording);
+  if (!recording) return recording.error();
   const auto in_recording = [&](const Failure& cause) {
     return Failure{cause.code, arguments.recording + ": " + cause.message};
   };
