@@ -63,7 +63,8 @@ Outcome<void> GeneratedDrive::check(const WheelOdometrySettings& odometry) {
       break;
     default:
       return failure(
-          "drives are generated for differential-positions, wheel-speeds and twist only; play a log "
+          "drives are generated for differential-positions, wheel-speeds and twist only; play a "
+          "log "
           "instead");
   }
   const auto signals = signals_of(odometry);

@@ -13,8 +13,8 @@
 namespace zonepack {
 
 // All GPIO lines of a live run. The outputs go to their safe levels when it stops, when it is
-// destroyed, and when an invariant fails (ZP_REQUIRE); after other deaths, zoned --safe-outputs sets
-// them. One at a time in a process.
+// destroyed, and when an invariant fails (ZP_REQUIRE); after other deaths, zoned --safe-outputs
+// sets them. One at a time in a process.
 //
 // Threads: its owner's.
 class LiveLines {

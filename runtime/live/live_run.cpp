@@ -50,9 +50,8 @@ Outcome<void> LiveRun::start() {
       ZoneMarkers::check(run_.accounted_map().model().graph, cycle_config(settings_).markers);
   if (!markers) return markers;
   if (auto opened = lines_.open(options_.allow_degraded); !opened) return opened;
-  if (auto opened = run_.open({.loader = control_.loader,
-                               .queue = &observers_.events,
-                               .directory = &memory_.map()});
+  if (auto opened = run_.open(
+          {.loader = control_.loader, .queue = &observers_.events, .directory = &memory_.map()});
       !opened) {
     return opened;
   }

@@ -35,7 +35,8 @@ struct LiveOptions {
 //
 //   inputs ──► control ──► loader            frames, corrections, edges; decisions; packs
 //                 │ queues and a status, which control never waits for
-//                 └──► observers             event log, recordings, saved state, service; GPIO lines
+//                 └──► observers             event log, recordings, saved state, service; GPIO
+//                 lines
 //
 // Threads: all calls by the main thread, whose signals must be held (platform/signals.hpp).
 class LiveRun {

@@ -76,13 +76,13 @@ Outcome<RunSummary> drive(const RunArguments& arguments, RunInputs& inputs,
   if (model.warning) warn(*model.warning);
 
   const Notifier notifier = service_manager();
-  const auto memory = LiveMemory::open(
-      {.zones = zones_with_room_for_another_map(model.needs.size()),
-       .slots = model.slots,
-       .socket = socket_path(inputs.settings.serve),
-       .must_serve = arguments.source.kind == CanSourceChoice::Kind::kSocketCan,
-       .manager = &notifier,
-       .handed = &handed});
+  const auto memory =
+      LiveMemory::open({.zones = zones_with_room_for_another_map(model.needs.size()),
+                        .slots = model.slots,
+                        .socket = socket_path(inputs.settings.serve),
+                        .must_serve = arguments.source.kind == CanSourceChoice::Kind::kSocketCan,
+                        .manager = &notifier,
+                        .handed = &handed});
   if (!memory) return memory.error();
   if (const std::string& warning = (*memory)->warning(); !warning.empty()) warn(warning);
 

@@ -66,9 +66,8 @@ Outcome<void> RunRecording::finish(const std::string& event_log_hash) {
     return not_whole(reason_text(done.error()), done.error().code);
   }
   if (end.lost == 0) return {};
-  return not_whole(
-      std::to_string(end.lost) + " cycles came faster than they could be written",
-      ErrorCode::kBusy);
+  return not_whole(std::to_string(end.lost) + " cycles came faster than they could be written",
+                   ErrorCode::kBusy);
 }
 
 }  // namespace zonepack

@@ -29,7 +29,8 @@ void PackFiller::use(const Catalog& catalog) {
 }
 
 Result<void> PackFiller::load(ZoneId zone) {
-  Result<ZoneLoad> load = ZoneLoad::begin(*catalog_, zone, places_, read_buffer_, ReadMode::kCached);
+  Result<ZoneLoad> load =
+      ZoneLoad::begin(*catalog_, zone, places_, read_buffer_, ReadMode::kCached);
   if (!load) return load.error();
   for (;;) {
     const Result<bool> more = load->step();

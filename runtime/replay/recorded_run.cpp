@@ -128,14 +128,13 @@ Outcome<void> RecordedDrive::answer(const RecordedInput& input) {
           zone < graph.zone_count() ? graph.name(zone) : "number " + std::to_string(zone);
       return "zone " + name + " (generation " + std::to_string(generation) + ")";
     };
-    return failure("diverged at cycle " +
-                       std::to_string(run_.switcher().map().cycle.state().cycles) +
-                       ": recorded is what became of a load of " +
-                       text(load.zone, load.generation) + ", but here " +
-                       (asked ? text(asked->zone, asked->generation) : std::string("none")) +
-                       " was asked for; replay with the version that recorded it, " +
-                       recording_.preface().program,
-                   ErrorCode::kMismatch);
+    return failure(
+        "diverged at cycle " + std::to_string(run_.switcher().map().cycle.state().cycles) +
+            ": recorded is what became of a load of " + text(load.zone, load.generation) +
+            ", but here " + (asked ? text(asked->zone, asked->generation) : std::string("none")) +
+            " was asked for; replay with the version that recorded it, " +
+            recording_.preface().program,
+        ErrorCode::kMismatch);
   }
   return {};
 }
@@ -238,10 +237,10 @@ Outcome<RecordedRun> open_recorded_run(const RecordingPreface& preface) {
   Result<Catalog> catalog =
       Catalog::read(preface.manifest, preface.map_folder, loaded.settings.memory.payload.mask);
   if (!catalog) {
-    return failure("the recorded map cannot be used: " +
-                       std::string(to_string(catalog.error().code)) + " (" +
-                       std::to_string(catalog.error().detail) + ")",
-                   catalog.error().code);
+    return failure(
+        "the recorded map cannot be used: " + std::string(to_string(catalog.error().code)) + " (" +
+            std::to_string(catalog.error().detail) + ")",
+        catalog.error().code);
   }
   return RecordedRun{std::move(loaded.settings), std::move(catalog).value()};
 }

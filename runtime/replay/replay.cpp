@@ -53,7 +53,9 @@ Outcome<ReplayResult> LogDrive::drive() {
 
   auto summary = run_.summarise(loader_.bytes_loaded(), frames_);
   if (!summary) return summary.error();
-  ReplayResult result{.summary = std::move(*summary), .trace = run_.take_trace()};
+  ReplayResult result;
+  result.summary = std::move(*summary);
+  result.trace = run_.take_trace();
   if (filler_) result.faults = filler_->faults();
   return result;
 }

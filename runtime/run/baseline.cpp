@@ -44,7 +44,8 @@ class Reader {
   Outcome<std::vector<BaselineRow>> read() {
     std::ifstream in(path_);
     if (!in) {
-      return failure(path_ + ": cannot read the baseline: " + std::strerror(errno), ErrorCode::kNotFound);
+      return failure(path_ + ": cannot read the baseline: " + std::strerror(errno),
+                     ErrorCode::kNotFound);
     }
     for (std::string line; std::getline(in, line);) {
       ++line_;
@@ -55,7 +56,8 @@ class Reader {
     }
     if (in.bad()) return failure(path_ + ": cannot read the baseline to its end", ErrorCode::kIo);
     if (rows_.empty()) {
-      return failure(path_ + ": the baseline has no rows; expected a CSV file with columns " + wanted());
+      return failure(path_ + ": the baseline has no rows; expected a CSV file with columns " +
+                     wanted());
     }
     return std::move(rows_);
   }

@@ -36,7 +36,7 @@ Outcome<void> check_limits(const Catalog& catalog, const ResidencyLimits& limits
 // A complete warning when a zone fits, but not together with one of its neighbours: the robot will
 // wait at that door.
 std::optional<std::string> tightness_warning(const Catalog& catalog, const ResidencyLimits& limits,
-                                     const std::vector<ZoneId>& pinned);
+                                             const std::vector<ZoneId>& pinned);
 
 // What to do about a budget that is too small, as a clause.
 std::string smallest_budget_text(const Catalog& catalog, const std::vector<ZoneId>& pinned);

@@ -50,7 +50,8 @@ class RunObserver {
 // inputs, loads and time come from, and in what lies between the cycle and the account:
 //
 //   inputs ─► switcher().run() ─► events ─► (a queue, when live) ─► on_event(), after_cycle()
-//             └ the cycle: pose, zone, memory, loads                └ statistics, event log, observers
+//             └ the cycle: pose, zone, memory, loads                └ statistics, event log,
+//             observers
 //
 // Threads: switcher(), start_at() and step() belong to control; on_event() and after_cycle() to the
 // account, the same thread or another; prepare(), add(), find() and remove() are for any; the rest

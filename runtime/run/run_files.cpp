@@ -73,9 +73,9 @@ Outcome<void> for_each_record(const std::string& path, std::string_view columns,
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) {
-    return failure(path + ": " + std::strerror(errno) + "; expected lines of " +
-                       std::string(columns),
-                   ErrorCode::kNotFound);
+    return failure(
+        path + ": " + std::strerror(errno) + "; expected lines of " + std::string(columns),
+        ErrorCode::kNotFound);
   }
   const std::size_t count = split(columns).size();
   std::string line;

@@ -53,7 +53,8 @@ Outcome<std::optional<RunStart>> find_start(const StartChoice& choice, const Tru
   if (choice.kind == Kind::kFix) return std::optional<RunStart>();
   if (choice.kind == Kind::kPose) return std::optional(RunStart{start_ns, choice.pose});
   const auto pose = first_truth(truth, start_ns);
-  if (!pose) return failure("--start truth: the truth file does not cover the start of the CAN log");
+  if (!pose)
+    return failure("--start truth: the truth file does not cover the start of the CAN log");
   return std::optional(RunStart{start_ns, *pose});
 }
 

@@ -180,9 +180,8 @@ std::string summary_table(const RunSummary& s) {
 
 Outcome<void> check_limits(const RunSummary& summary) {
   if (summary.budget_violations == 0) return {};
-  return failure(
-      "a limit was exceeded in " + std::to_string(summary.budget_violations) + " cycles",
-      ErrorCode::kTooLarge);
+  return failure("a limit was exceeded in " + std::to_string(summary.budget_violations) + " cycles",
+                 ErrorCode::kTooLarge);
 }
 
 Outcome<void> write_summary(const RunSummary& summary, const std::string& json_path) {

@@ -116,10 +116,9 @@ TEST_F(InputLinesTest, ALineThatFailsCountsAsInactiveAndComesBack) {
 TEST_F(InputLinesTest, AnOutputIsRefusedAsAnInputByName) {
   chips.make_output("robot", 2);
   InputLines refused(chips, gpio, board);
-  std::string fault;
-  std::vector<std::string> warnings;
-  EXPECT_FALSE(refused.open(false, fault, warnings));
-  EXPECT_THAT(fault,
+  const auto opened = refused.open(false);
+  ASSERT_FALSE(opened);
+  EXPECT_THAT(opened.error().message,
               HasSubstr("gpio.zone_markers.door: line 2 of chip robot: set up as an output"));
 }
 

@@ -70,13 +70,13 @@ class RecordedDrive {
   std::string drive(std::uint64_t seed, const std::string& events, RecordingFile* file,
                     FlightRecorder* flight, const AfterCycle& after_cycle = {}) {
     std::mt19937_64 random(seed);
-    std::string fault;
-    const auto map = MapModel::make(run_.catalog, terms_, fault);
-    if (!map) throw std::runtime_error(fault);
+    const auto made = MapModel::make(run_.catalog, terms_);
+    if (!made) throw std::runtime_error(made.error().message);
+    const MapModel* const map = made->get();
     Residency memory(map->needs.size(), map->limits);
-    if (!map->pin(memory, fault)) throw std::runtime_error(fault);
+    if (!map->pin(memory)) throw std::runtime_error("pins");
     SometimesFailing filler(random);
-    ModelledLoader loader(map->slots, map->work, terms_.rates, &filler);
+    ModelledLoader loader(run_.catalog, map->slots, terms_.rates, &filler);
     EventLog log([&](ZoneId zone) { return std::string_view(map->graph.name(zone)); });
     if (!log.write_to(events)) throw std::runtime_error(events);
 
@@ -91,7 +91,7 @@ class RecordedDrive {
     CanLogReader can(folder + "can0.log");
     if (!can.open()) throw std::runtime_error("can0.log");
     SimCanBus bus(&can);
-    const auto corrections = read_corrections(folder + "corrections.txt", fault);
+    const auto corrections = read_corrections(folder + "corrections.txt");
     std::size_t taken = 0;
     std::vector<CanFrame> frames(64);
     std::vector<Lease> leases;
