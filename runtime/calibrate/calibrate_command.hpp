@@ -22,8 +22,7 @@ int run_calibrate(const CalibrateArguments& arguments);
 // The keys of the section odometry that change, as YAML to paste over the present ones.
 std::string calibrated_yaml(const Calibration& calibration, const OdometrySettings& odometry);
 
-// What the wheels did over a log, by the settings. Nothing when it cannot be read; `fault` tells.
-std::optional<std::vector<WheelStep>> read_wheel_steps(const Settings& settings,
-                                                       const std::string& can, std::string& fault);
+// What the wheels did over the CAN log `can`, as the settings read it; at least one step.
+Outcome<std::vector<WheelStep>> read_wheel_steps(const Settings& settings, const std::string& can);
 
 }  // namespace zonepack

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
 #include "runtime/run/run_files.hpp"
 
@@ -54,12 +54,13 @@ struct Calibration {
 // independent of each other, for wheels slip at random: each window's motion is compared with the
 // truth's, weighted by the noise that the settings tell for its way and turn. The two sides are
 // told apart only when the data do: a difference that is mere noise would bend every later path.
-// Nothing when the drive cannot tell; `fault` says what drive is needed.
+// Fails when the drive does not determine them, and says what drive is needed; the caller adds the
+// names of the files.
 inline constexpr double kCalibrationWindow_s = 2;
 inline constexpr double kLeastDistance_m = 10;
 inline constexpr double kLeastTurn_rad = 6.3;
-std::optional<Calibration> calibrate(const std::vector<WheelStep>& steps, const TruthTrack& truth,
-                                     const WheelOdometrySettings& settings, std::string& fault);
+Outcome<Calibration> calibrate(const std::vector<WheelStep>& steps, const TruthTrack& truth,
+                               const WheelOdometrySettings& settings);
 
 // Dead reckoning with these values against the truth, from the first step that it covers.
 CalibrationErrors errors_with(const CalibrationValues& values, const std::vector<WheelStep>& steps,

@@ -144,9 +144,9 @@ class Check {
 
   void lines() {
     if (map_) {
-      if (const auto wrong =
-              ZoneMarkers::fault_of(map_->graph, cycle_config(inputs_.settings).markers)) {
-        refuse("zone markers", *wrong);
+      const auto fit = ZoneMarkers::check(map_->graph, cycle_config(inputs_.settings).markers);
+      if (!fit) {
+        refuse("zone markers", fit.error().message);
       }
     }
     for (LineFinding& line : inspect_lines(kernel_gpio(), inputs_.settings.gpio)) {

@@ -36,8 +36,8 @@ bool LiveRun::start(std::string& fault) {
   const auto begun = p.shared.begin_map(static_cast<std::uint32_t>(map->model().needs.size()));
   ZP_REQUIRE(begun.ok());
   const CycleConfig config = cycle_config(p.inputs.settings);
-  if (const auto wrong = ZoneMarkers::fault_of(map->model().graph, config.markers)) {
-    fault = *wrong;
+  if (const auto fit = ZoneMarkers::check(map->model().graph, config.markers); !fit) {
+    fault = fit.error().message;
     return false;
   }
   if (!p.lines.open(p.options.allow_degraded, fault)) return false;

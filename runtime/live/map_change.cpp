@@ -59,9 +59,9 @@ Result<std::uint64_t> MapChange::prepare(const MapVersion& in_use) {
              "), expected a manifest as zonepack build writes it; copy it again, as the last file";
     return catalog.error();
   }
-  if (const auto checked = check_next_version(in_use.catalog(), *catalog, ports_.read, fault_);
-      !checked) {
-    return checked.error();
+  if (const auto checked = check_next_version(in_use.catalog(), *catalog, ports_.read); !checked) {
+    fault_ = checked.error().message;
+    return checked.error().code;
   }
   const std::size_t zones = catalog->zones.size();
   if (zones > ports_.shared.zone_capacity()) {

@@ -30,9 +30,14 @@ bool Service::open(const ServeSettings& settings, const Seqlock<LiveStatus>& sta
       .dump = std::move(dump),
       .lines = lines};
   served_ = std::move(first);
-  server_ = Server::open(settings, ports, served_->catalog(), served_->model().graph,
-                         served_->model().pinned, fault);
-  return server_ != nullptr;
+  auto server = Server::open(settings, ports, served_->catalog(), served_->model().graph,
+                             served_->model().pinned);
+  if (!server) {
+    fault = server.error().message;
+    return false;
+  }
+  server_ = std::move(*server);
+  return true;
 }
 
 Result<void> Service::start(const Notifier& notifier, std::function<std::uint64_t()> cycles) {

@@ -69,9 +69,9 @@ int tell_results(const ReplayArguments& arguments, const Catalog& catalog,
 }
 
 int run_recording(const ReplayArguments& arguments) {
+  auto recording = RecordingReader::open(arguments.recording);
+  if (!recording) return fail_replay(recording.error().message);
   std::string fault;
-  auto recording = RecordingReader::open(arguments.recording, fault);
-  if (!recording) return fail_replay(fault);
   const auto run = open_recorded_run(recording->preface(), fault);
   if (!run) return fail_replay(arguments.recording + ": " + fault);
   const auto result = replay_recording(*recording, *run, arguments.events, fault);

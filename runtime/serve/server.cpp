@@ -15,19 +15,21 @@ constexpr std::uint32_t kFirstSession = 16;  // tokens of the poller; listeners 
 constexpr std::size_t kMostEventsAtOnce = 256;
 constexpr std::int64_t kAcceptPause_ns = 100'000'000;
 
-std::string listen_fault(const std::string& path, const Error& error) {
-  const std::string which = "socket " + path + ": ";
+std::string listen_reason(const Error& error) {
   switch (error.code) {
     case ErrorCode::kExists:
-      return which +
-             "another zoned listens there, or it is a file of another kind; stop the other,"
+      return "another zoned listens there, or it is a file of another kind; stop the other,"
              " or give this one its own serve.socket";
     case ErrorCode::kTooLarge:
-      return which + "the path is over " + std::to_string(LocalListener::kMostPath) + " bytes";
+      return "the path is over " + std::to_string(LocalListener::kMostPath) + " bytes";
     default:
-      return which + "cannot be made: " + std::strerror(static_cast<int>(error.detail)) +
+      return std::string("cannot be made: ") + std::strerror(static_cast<int>(error.detail)) +
              "; the folder must exist and be writable for this user (serve.socket)";
   }
+}
+
+Failure cannot_listen(const std::string& path, const Error& error) {
+  return failure("socket " + path + ": " + listen_reason(error), error.code);
 }
 
 std::unique_ptr<ServedMap> served_map(const Catalog& catalog, const ZoneGraph& graph,
@@ -60,44 +62,41 @@ Server::Server(const ServeSettings& settings, const ServerPorts& ports, Poller p
 
 Server::~Server() = default;
 
-std::unique_ptr<Server> Server::open(const ServeSettings& settings, const ServerPorts& ports,
-                                     const Catalog& catalog, const ZoneGraph& graph,
-                                     std::span<const ZoneId> pinned, std::string& fault) {
+Outcome<std::unique_ptr<Server>> Server::open(const ServeSettings& settings,
+                                              const ServerPorts& ports, const Catalog& catalog,
+                                              const ZoneGraph& graph,
+                                              std::span<const ZoneId> pinned) {
   Result<Poller> poller = Poller::create();
   if (!poller) {
-    fault = std::string("sockets cannot be waited for: ") +
-            std::strerror(static_cast<int>(poller.error().detail));
-    return nullptr;
+    return failure("sockets cannot be waited for: " + reason_text(poller.error()),
+                   poller.error().code);
   }
   std::unique_ptr<Server> server(new Server(settings, ports, std::move(poller).value()));
   server->map_ = served_map(catalog, graph, 1, ports.map_epoch, pinned);
   server->handler_.router().use(server->map_->zones, server->map_->serial);
-  if (!server->add_listener(settings.socket, settings.mode, false, fault) ||
-      !server->add_listener(settings.looking_socket, settings.looking_mode, true, fault)) {
-    return nullptr;
+  auto listening = server->add_listener(settings.socket, settings.mode, false);
+  if (listening) {
+    listening = server->add_listener(settings.looking_socket, settings.looking_mode, true);
   }
+  if (!listening) return listening.error();
   return server;
 }
 
-bool Server::add_listener(const std::string& path, const std::string& mode, bool looking_only,
-                          std::string& fault) {
-  if (path.empty()) return true;
+Outcome<void> Server::add_listener(const std::string& path, const std::string& mode,
+                                   bool looking_only) {
+  if (path.empty()) return {};
   const std::optional<unsigned> bits = socket_mode(mode);
   if (!bits) {
-    fault =
-        "socket " + path + ": mode \"" + mode + "\" is none; expected octal digits such as 0660";
-    return false;
+    return failure("socket " + path + ": mode \"" + mode +
+                   "\" is none; expected octal digits such as 0660");
   }
   Result<LocalListener> listener = LocalListener::listen(path, *bits);
-  if (!listener) {
-    fault = listen_fault(path, listener.error());
-    return false;
-  }
+  if (!listener) return cannot_listen(path, listener.error());
   listeners_.push_back({std::move(listener).value(), looking_only});
   const auto token = static_cast<std::uint32_t>(listeners_.size() - 1);
   const auto added = poller_.add(listeners_.back().socket.fd(), token, Poller::kReadable);
-  if (!added) fault = listen_fault(path, added.error());
-  return added.ok();
+  if (!added) return cannot_listen(path, added.error());
+  return {};
 }
 
 void Server::offer_map(std::uint32_t serial, const Catalog& catalog, const ZoneGraph& graph,

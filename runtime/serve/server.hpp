@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "platform/local_socket.hpp"
 #include "platform/poller.hpp"
 #include "runtime/serve/answers.hpp"
@@ -24,9 +25,10 @@ namespace zonepack {
 // undone holds it up.
 //
 // Bounds: settings.clients at once; accepting kMostAccepts and, for each client, kMostRequests a
-// turn; what Session, CommandRouter and NodeStore state. Memory: below 100 KiB, and for each client
-// that does not read up to Session::kMostWaiting here and kKernelBytes and one message in the
-// kernel. Tables that grow with the map are charged with it (table_bytes).
+// turn; what Session, CommandRouter and NodeStore state.
+// Memory: below 100 KiB, and for each client that does not read up to Session::kMostWaiting here
+// and kKernelBytes and one message in the kernel. Tables that grow with the map are charged with it
+// (table_bytes).
 // Threads: all calls by one, but stop() by any. Does not throw, but may run out of memory.
 class Server {
  public:
@@ -35,11 +37,11 @@ class Server {
   static constexpr std::size_t kMostAccepts = 16;
   static constexpr std::size_t kMostRequests = 16;
 
-  // Starts to listen. On failure null, and `fault` says why in a complete message: which file, and
-  // what to do. `pinned`: zones pinned from the start.
-  static std::unique_ptr<Server> open(const ServeSettings& settings, const ServerPorts& ports,
-                                      const Catalog& catalog, const ZoneGraph& graph,
-                                      std::span<const ZoneId> pinned, std::string& fault);
+  // Starts to listen; never null. `pinned`: zones pinned from the start.
+  static Outcome<std::unique_ptr<Server>> open(const ServeSettings& settings,
+                                               const ServerPorts& ports, const Catalog& catalog,
+                                               const ZoneGraph& graph,
+                                               std::span<const ZoneId> pinned);
   ~Server();
 
   // One turn: waits for something to do, at most timeout_ms, and does it.
@@ -78,8 +80,7 @@ class Server {
   };
 
   Server(const ServeSettings& settings, const ServerPorts& ports, Poller poller);
-  bool add_listener(const std::string& path, const std::string& mode, bool looking_only,
-                    std::string& fault);
+  Outcome<void> add_listener(const std::string& path, const std::string& mode, bool looking_only);
   void tell_subscribers();
   void take_events();
   void change_map();

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "runtime/odometry/can_signals.hpp"
 
 // DBC files: what frames of a CAN bus hold, by name of message and signal. Read at start; what the
@@ -58,16 +60,14 @@ class DbcFile {
 
   const std::vector<DbcMessage>& messages() const noexcept { return messages_; }
 
-  // The signal of "Message.Signal". Nothing when there is none or when it cannot be read (does not
-  // fit its message, a float that is not 32 bits long ...); `fault` tells, with file and line.
-  std::optional<DbcFound> find(std::string_view name, std::string& fault) const;
+  // The signal of "Message.Signal". Fails when there is none (kNotFound) or it cannot be read: it
+  // does not fit its message, it is a float that is not 32 bits long. The message names the line.
+  Outcome<DbcFound> find(std::string_view name) const;
 
  private:
-  const DbcMessage* find_message(std::string_view name, std::string& fault) const;
-  const DbcSignal* find_signal(const DbcMessage& message, std::string_view name,
-                               std::string& fault) const;
-  static std::optional<std::string> select(const DbcMessage& message, const DbcSignal& signal,
-                                           CanSignal& result);
+  // Never null.
+  Outcome<const DbcMessage*> find_message(std::string_view name) const;
+  Outcome<const DbcSignal*> find_signal(const DbcMessage& message, std::string_view name) const;
 
   std::string path_;
   std::vector<DbcMessage> messages_;

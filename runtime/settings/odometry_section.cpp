@@ -89,10 +89,9 @@ class SignalNames {
   void from_dbc(const YamlSection& section, const char* key, const std::string& name,
                 CanSignal& signal) {
     if (dbc_broken_) return;
-    std::string fault;
-    const std::optional<DbcFound> found = dbc_.find(name, fault);
+    const Outcome<DbcFound> found = dbc_.find(name);
     if (!found) {
-      faults_.add(section.mark_of(key), section.path_of(key), fault);
+      faults_.add(section.mark_of(key), section.path_of(key), found.error().message);
       return;
     }
     longest_cycle_s_ = std::max(longest_cycle_s_, found->cycle_s.value_or(0));

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "runtime/odometry/pose.hpp"
 #include "runtime/pack_format/ids.hpp"
 #include "runtime/zones/zone_graph.hpp"
@@ -30,7 +30,8 @@ struct MarkerVerdict {
 // What passing a marker says of the robot's zone: believed only where the pose, give or take three
 // sigma, is at the portal, and for a door only while the robot moves through it.
 //
-// Real-time: pass() looks at the portals of one zone; no allocation.   Threads: immutable.
+// Real-time: pass() looks at the portals of one zone; no allocation.
+// Threads: immutable.
 class ZoneMarkers {
  public:
   // `graph` must outlive this object.
@@ -42,10 +43,8 @@ class ZoneMarkers {
   // current: the robot's zone by now. Refused: "no such zone", "no pose", "elsewhere", "standing".
   MarkerVerdict pass(std::size_t marker, const PoseEstimate& pose, ZoneId current) const noexcept;
 
-  // What is wrong with markers on this map, as a complete message: zones that do not exist, doors
-  // without a portal.
-  static std::optional<std::string> fault_of(const ZoneGraph& graph,
-                                             std::span<const ZoneMarkerSettings> markers);
+  // Fails when a marker names a zone that the map does not have, or a door without a portal.
+  static Outcome<void> check(const ZoneGraph& graph, std::span<const ZoneMarkerSettings> markers);
 
  private:
   struct Marker {

@@ -48,9 +48,9 @@ int fail(const std::string& what) {
 int main(int argc, char** argv) {
   if (argc < 2) return std::fprintf(stderr, "usage: recorded_cycles RECORDING [CYCLES]\n"), 2;
   const std::uint64_t wanted = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : UINT64_MAX;
+  auto recording = RecordingReader::open(argv[1]);
+  if (!recording) return fail(recording.error().message);
   std::string fault;
-  auto recording = RecordingReader::open(argv[1], fault);
-  if (!recording) return fail(fault);
   if (recording->checkpoint()) return fail("the recording does not begin with cycle 0");
   const auto run = open_recorded_run(recording->preface(), fault);
   if (!run) return fail(fault);

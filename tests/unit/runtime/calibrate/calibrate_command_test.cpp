@@ -28,13 +28,14 @@ std::string text_of(const std::string& path) {
 }
 
 Calibration calibrate_scenario1(const Settings& settings) {
+  const auto steps = read_wheel_steps(settings, kLog);
+  EXPECT_TRUE(steps.ok()) << steps.error().message;
   std::string fault;
-  const auto steps = read_wheel_steps(settings, kLog, fault);
   const auto truth = read_truth(kTruth, fault);
-  EXPECT_TRUE(steps && truth) << fault;
-  const auto found = calibrate(*steps, *truth, settings.odometry.wheels, fault);
-  EXPECT_TRUE(found.has_value()) << fault;
-  return found.value_or(Calibration{});
+  EXPECT_TRUE(truth) << fault;
+  const auto found = calibrate(*steps, *truth, settings.odometry.wheels);
+  EXPECT_TRUE(found.ok()) << found.error().message;
+  return found ? *found : Calibration{};
 }
 
 // The text with each line of the section odometry replaced that `yaml` has, too.

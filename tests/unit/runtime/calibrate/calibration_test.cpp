@@ -43,17 +43,16 @@ Made make_drive(const CalibrationValues& values, double slip, int steps, double 
   return made;
 }
 
-std::optional<Calibration> run(const Made& made, std::string& fault) {
+Outcome<Calibration> outcome_of(const Made& made) {
   WheelOdometrySettings settings;
   settings.geometry.track_m = 0.4;
-  return calibrate(made.steps, TruthTrack(made.truth), settings, fault);
+  return calibrate(made.steps, TruthTrack(made.truth), settings);
 }
 
 Calibration run(const Made& made) {
-  std::string fault;
-  const auto found = run(made, fault);
-  EXPECT_TRUE(found.has_value()) << fault;
-  return found.value_or(Calibration{});
+  const auto found = outcome_of(made);
+  EXPECT_TRUE(found.ok()) << found.error().message;
+  return found ? *found : Calibration{};
 }
 
 TEST(Calibration, FindsScaleAndTrackOfWheelsThatDoNotSlip) {
@@ -88,12 +87,13 @@ TEST(Calibration, TakesTheSidesToBeAlikeWhenTheirDifferenceMayBeSlip) {
 }
 
 TEST(Calibration, RefusesADriveThatTellsTooLittle) {
-  std::string fault;
-  // 5 s at 0.5 m/s.
-  EXPECT_FALSE(run(make_drive({1, 1, 0.4}, 0, 250), fault));
-  EXPECT_THAT(fault, HasSubstr("needed: at least 10.0 m and 6.3 rad (a full turn), better 100 m"));
-  EXPECT_FALSE(run(make_drive({1, 1, 0.4}, 0, 5000, 0.01), fault));  // long, but hardly a turn
-  EXPECT_THAT(fault, HasSubstr("m and 0."));
+  const auto short_drive = outcome_of(make_drive({1, 1, 0.4}, 0, 250));  // 5 s at 0.5 m/s
+  ASSERT_FALSE(short_drive);
+  EXPECT_THAT(short_drive.error().message,
+              HasSubstr("needed: at least 10.0 m and 6.3 rad (a full turn), better 100 m"));
+  const auto straight_drive = outcome_of(make_drive({1, 1, 0.4}, 0, 5000, 0.01));
+  ASSERT_FALSE(straight_drive);
+  EXPECT_THAT(straight_drive.error().message, HasSubstr("m and 0."));
 }
 
 TEST(Calibration, DoesNotLookAcrossGapsNorBeyondTheTruth) {

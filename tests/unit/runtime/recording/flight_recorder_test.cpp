@@ -22,8 +22,11 @@ class FlightRecorderTest : public testing::Test {
   std::string path(const std::string& name) const { return folder / name; }
 
   std::optional<RecordedRunResult> replay(const std::string& recording) {
-    auto reader = RecordingReader::open(recording, fault);
-    if (!reader) return std::nullopt;
+    auto reader = RecordingReader::open(recording);
+    if (!reader) {
+      fault = reader.error().message;
+      return std::nullopt;
+    }
     auto result = replay_recording(*reader, drive.run(), path("again.jsonl"), fault);
     note = reader->note();
     return result;
@@ -76,8 +79,8 @@ TEST_F(FlightRecorderTest, KeepsAMapForAsLongAsACycleNeedsIt) {
   const auto has = [&](std::uint32_t number) {
     EXPECT_TRUE((*flight)->dump(path("dump.zpr")));
     for (const std::string& recording : {path("dump.zpr"), path("flight")}) {
-      const auto reader = RecordingReader::open(recording, fault);
-      EXPECT_TRUE(reader) << fault;
+      const auto reader = RecordingReader::open(recording);
+      EXPECT_TRUE(reader.ok()) << reader.error().message;
       if (!reader || reader->map(number) == nullptr) return false;
     }
     return true;
@@ -146,8 +149,8 @@ TEST_F(FlightRecorderTest, KeepsItsBytesAndForgetsTheOldest) {
   ASSERT_TRUE(dumped.ok());
   EXPECT_GT(dumped->first_cycle, 200u);
   EXPECT_EQ(dumped->next_cycle, 300u);
-  auto reader = RecordingReader::open(path("dump.zpr"), fault);
-  ASSERT_TRUE(reader) << fault;
+  auto reader = RecordingReader::open(path("dump.zpr"));
+  ASSERT_TRUE(reader.ok()) << reader.error().message;
   ASSERT_TRUE(reader->checkpoint());
   EXPECT_EQ(reader->checkpoint()->cycle, dumped->first_cycle);
   while (reader->next() != nullptr) {
@@ -162,8 +165,8 @@ TEST_F(FlightRecorderTest, KeepsTheFilesOfTheRunBefore) {
   auto second = FlightRecorder::open(path("flight"), true, kMiB, drive.preface());
   ASSERT_TRUE(second.ok());
   EXPECT_EQ((*second)->dump(path("dump.zpr")).error().code, ErrorCode::kNotFound);
-  auto reader = RecordingReader::open(path("flight-previous"), fault);
-  ASSERT_TRUE(reader) << fault;
+  auto reader = RecordingReader::open(path("flight-previous"));
+  ASSERT_TRUE(reader.ok()) << reader.error().message;
   EXPECT_NE(reader->next(), nullptr);
 }
 
@@ -179,8 +182,9 @@ TEST_F(FlightRecorderTest, GoesOnFromACheckpointAsFromAGuess) {
   const auto dumped = (*flight)->dump(path("dump.zpr"));
   ASSERT_TRUE(dumped.ok());
   EXPECT_EQ(dumped->first_cycle, 7001u);  // 7000 found the tap still full
-  auto reader = RecordingReader::open(path("dump.zpr"), fault);
-  ASSERT_TRUE(reader && reader->checkpoint()) << fault;
+  auto reader = RecordingReader::open(path("dump.zpr"));
+  ASSERT_TRUE(reader.ok()) << reader.error().message;
+  ASSERT_TRUE(reader->checkpoint());
   EXPECT_TRUE(reader->checkpoint()->has_pose);
   EXPECT_FALSE(reader->checkpoint()->resident.empty());
   const auto result = replay(path("dump.zpr"));

@@ -25,8 +25,11 @@ class RecordedRunTest : public testing::Test {
   }
 
   std::optional<RecordedRunResult> replay(const std::string& recording) {
-    auto reader = RecordingReader::open(recording, fault);
-    if (!reader) return std::nullopt;
+    auto reader = RecordingReader::open(recording);
+    if (!reader) {
+      fault = reader.error().message;
+      return std::nullopt;
+    }
     auto result = replay_recording(*reader, drive.run(), path("again.jsonl"), fault);
     note = reader->note();
     return result;
@@ -62,8 +65,8 @@ TEST_F(RecordedRunTest, GivesTheSameEventsByteForByte) {
 // The same inputs but one: shown to be what the events depend on.
 TEST_F(RecordedRunTest, DependsOnEveryInput) {
   record(1);
-  auto reader = RecordingReader::open(path("run.zpr"), fault);
-  ASSERT_TRUE(reader) << fault;
+  auto reader = RecordingReader::open(path("run.zpr"));
+  ASSERT_TRUE(reader.ok()) << reader.error().message;
   auto changed = RecordingFile::create(path("changed.zpr"), drive.preface());
   CycleBlockWriter block(drive.preface().terms.period_ns);
   std::vector<std::byte> records(kMostCycleBytes), sealed;
@@ -98,7 +101,7 @@ TEST_F(RecordedRunTest, DependsOnEveryInput) {
 
 TEST_F(RecordedRunTest, SaysAtWhichCycleItDiverges) {
   record(2);
-  auto reader = RecordingReader::open(path("run.zpr"), fault);
+  auto reader = RecordingReader::open(path("run.zpr"));
   std::uint64_t first_load = 0;
   while (const RecordedInput* input = reader->next()) {
     if (!input->loads.empty()) break;

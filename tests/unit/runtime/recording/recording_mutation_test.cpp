@@ -25,7 +25,7 @@ class RecordingMutation : public testing::Test {
 
   // The records of the first cycles, as one content.
   Bytes first_cycles(std::uint64_t count) {
-    auto reader = RecordingReader::open(path("whole.zpr"), fault);
+    auto reader = RecordingReader::open(path("whole.zpr"));
     CycleBlockWriter block(drive.preface().terms.period_ns);
     Bytes records(kMostCycleBytes);
     while (reader->cycles_read() < count) {
@@ -61,7 +61,7 @@ class RecordingMutation : public testing::Test {
     std::ofstream(path("made_up.zpr"), std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
-    auto reader = RecordingReader::open(path("made_up.zpr"), fault);
+    auto reader = RecordingReader::open(path("made_up.zpr"));
     if (!reader) return 0;
     const auto result = replay_recording(*reader, drive.run(), "", fault);
     return result ? result->replay.summary.cycles : 0;

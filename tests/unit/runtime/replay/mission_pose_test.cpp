@@ -22,7 +22,7 @@ namespace {
 constexpr std::int64_t kCycle_ns = 10'000'000;
 const std::string kFolder = ZONEPACK_TEST_DATA "/scenario1_loop/";
 
-struct Outcome {
+struct MissionEnd {
   std::vector<double> error_m;  // per cycle with a valid pose, sorted
   double nees = 0;              // mean of the squared error over its covariance, once trusted
   bool trusted = false;
@@ -37,8 +37,8 @@ struct Outcome {
 // alter(i, fix): changes the i-th fix; false leaves it out.
 using Alter = std::function<bool(std::size_t, PoseCorrection&)>;
 
-Outcome drive(const Alter& alter, bool start_at_truth = false,
-              OdometryModel model = OdometryModel::kDifferentialPositions) {
+MissionEnd drive(const Alter& alter, bool start_at_truth = false,
+                 OdometryModel model = OdometryModel::kDifferentialPositions) {
   Settings settings = load_settings(ZONEPACK_SOURCE_DIR "/config/agilex.yaml").settings;
   if (model == OdometryModel::kTwist) {
     settings.odometry.wheels.model = model;
@@ -53,7 +53,7 @@ Outcome drive(const Alter& alter, bool start_at_truth = false,
   SimCanBus bus(&log);
   WheelOdometry odometry(settings.odometry.wheels);
   PoseFilter filter(settings.pose);
-  Outcome outcome;
+  MissionEnd outcome;
   std::int64_t now = *bus.next_arrival_ns();
   if (start_at_truth) filter.start_at(now, truth->samples().front().T_map_base, 0.05, 0.02);
   std::array<CanFrame, 64> batch;
@@ -98,7 +98,7 @@ Outcome drive(const Alter& alter, bool start_at_truth = false,
 bool as_they_are(std::size_t, PoseCorrection&) { return true; }
 
 TEST(MissionPose, StaysWithinCentimetresOfTheTruthAndRefusesEveryWrongFix) {
-  const Outcome outcome = drive(as_they_are);
+  const MissionEnd outcome = drive(as_they_are);
   EXPECT_TRUE(outcome.trusted);
   EXPECT_LT(outcome.quantile_m(0.5), 0.025);
   EXPECT_LT(outcome.quantile_m(0.95), 0.05);
@@ -114,20 +114,20 @@ TEST(MissionPose, StaysWithinCentimetresOfTheTruthAndRefusesEveryWrongFix) {
 }
 
 TEST(MissionPose, TwistMessagesDoAlmostAsWell) {
-  const Outcome outcome = drive(as_they_are, false, OdometryModel::kTwist);
+  const MissionEnd outcome = drive(as_they_are, false, OdometryModel::kTwist);
   EXPECT_LT(outcome.quantile_m(0.95), 0.06);
   EXPECT_EQ(outcome.good_fixes_refused, 0u);
 }
 
 TEST(MissionPose, WithoutFixesDeadReckoningDriftsAndIsNotTrusted) {
-  const Outcome outcome = drive([](std::size_t, PoseCorrection&) { return false; }, true);
+  const MissionEnd outcome = drive([](std::size_t, PoseCorrection&) { return false; }, true);
   EXPECT_FALSE(outcome.trusted);
   EXPECT_GT(outcome.quantile_m(1), 0.5);
   EXPECT_LT(outcome.quantile_m(1), 2.5);
 }
 
 TEST(MissionPose, EverySecondFixWrongCostsAccuracyOnly) {
-  const Outcome outcome = drive([](std::size_t i, PoseCorrection& fix) {
+  const MissionEnd outcome = drive([](std::size_t i, PoseCorrection& fix) {
     if (i % 2 == 1) fix.T_map_base.x_m += 2 + static_cast<double>(i % 5);
     return true;
   });
@@ -139,7 +139,7 @@ TEST(MissionPose, EverySecondFixWrongCostsAccuracyOnly) {
 
 TEST(MissionPose, FindsBackWhenGoodFixesReturnAfterWrongOnesThatAgreed) {
   // For 20 s all fixes are 4 m off to the east; then they are right again.
-  const Outcome outcome = drive([](std::size_t i, PoseCorrection& fix) {
+  const MissionEnd outcome = drive([](std::size_t i, PoseCorrection& fix) {
     if (i >= 20 && i < 40) fix.T_map_base.x_m += 4;
     return true;
   });

@@ -52,10 +52,13 @@ struct FakeRun {
   }
 
   bool open() {
-    std::string fault;
-    server = Server::open(settings, ports, catalog, graph, {}, fault);
-    if (!server) std::fprintf(stderr, "%s\n", fault.c_str());
-    return server != nullptr;
+    auto opened = Server::open(settings, ports, catalog, graph, {});
+    if (!opened) {
+      std::fprintf(stderr, "%s\n", opened.error().message.c_str());
+      return false;
+    }
+    server = std::move(*opened);
+    return true;
   }
 
   void happen(EventKind kind, ZoneId zone, std::uint32_t generation = 1) {

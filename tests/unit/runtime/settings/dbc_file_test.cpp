@@ -21,16 +21,15 @@ LoadedDbc parse(const std::string& text) { return parse_dbc(text, "a.dbc"); }
 std::string message(const std::string& signals) { return "BO_ 100 M: 8 N\n" + signals + "\n"; }
 
 DbcFound find(const LoadedDbc& loaded, const std::string& name) {
-  std::string fault;
-  const auto found = loaded.file.find(name, fault);
-  EXPECT_TRUE(found.has_value()) << fault;
-  return found.value_or(DbcFound{});
+  const auto found = loaded.file.find(name);
+  EXPECT_TRUE(found.ok()) << found.error().message;
+  return found ? *found : DbcFound{};
 }
 
 std::string fault_of(const LoadedDbc& loaded, const std::string& name) {
-  std::string fault;
-  EXPECT_FALSE(loaded.file.find(name, fault).has_value()) << name;
-  return fault;
+  const auto found = loaded.file.find(name);
+  EXPECT_FALSE(found.ok()) << name;
+  return found.error().message;
 }
 
 CanFrame frame(std::uint32_t id, std::initializer_list<int> bytes) {

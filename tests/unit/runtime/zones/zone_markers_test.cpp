@@ -71,7 +71,8 @@ TEST_F(Markers, WithoutAPoseOrAZoneOfTheMapNothingIsBelieved) {
 
 TEST_F(Markers, AreRefusedByNameWhereTheMapHasNoSuchZoneOrDoor) {
   const auto fault = [&](std::vector<ZoneMarkerSettings> wrong) {
-    return ZoneMarkers::fault_of(graph, wrong).value_or("none");
+    const auto fit = ZoneMarkers::check(graph, wrong);
+    return fit ? "none" : fit.error().message;
   };
   EXPECT_EQ(fault({settings[0], settings[1]}), "none");
   EXPECT_EQ(fault({settings[2]}), "gpio.zone_markers.gone.zones: the map has no zone x");
