@@ -25,9 +25,10 @@ namespace zonepack {
 // undone holds it up.
 //
 // Bounds: settings.clients at once; accepting kMostAccepts and, for each client, kMostRequests a
-// turn; what Session, CommandRouter and NodeStore state. Memory: below 100 KiB, and for each client
-// that does not read up to Session::kMostWaiting here and kKernelBytes and one message in the
-// kernel. Tables that grow with the map are charged with it (table_bytes).
+// turn; what Session, CommandRouter and NodeStore state.
+// Memory: below 100 KiB, and for each client that does not read up to Session::kMostWaiting here
+// and kKernelBytes and one message in the kernel. Tables that grow with the map are charged with it
+// (table_bytes).
 // Threads: all calls by one, but stop() by any. Does not throw, but may run out of memory.
 class Server {
  public:

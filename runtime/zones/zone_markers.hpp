@@ -30,7 +30,8 @@ struct MarkerVerdict {
 // What passing a marker says of the robot's zone: believed only where the pose, give or take three
 // sigma, is at the portal, and for a door only while the robot moves through it.
 //
-// Real-time: pass() looks at the portals of one zone; no allocation.   Threads: immutable.
+// Real-time: pass() looks at the portals of one zone; no allocation.
+// Threads: immutable.
 class ZoneMarkers {
  public:
   // `graph` must outlive this object.

@@ -27,9 +27,8 @@ class InputLinesTest : public testing::Test {
 
   InputLines& opened() {
     lines = std::make_unique<InputLines>(chips, gpio, board);
-    std::string fault;
-    std::vector<std::string> warnings;
-    EXPECT_TRUE(lines->open(false, fault, warnings)) << fault;
+    const auto opened = lines->open(false);
+    EXPECT_TRUE(opened) << opened.error().message;
     return *lines;
   }
   void drive(unsigned line, bool high) {
