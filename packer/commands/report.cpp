@@ -120,16 +120,15 @@ void add_report_command(CLI::App& app, int& exit_code) {
   command->add_option("DIR", options->folder, "folder of the map")->required();
   command->add_option("--out", options->out, "file to write: .html, .png or .svg")
       ->required()
-      ->check([](const std::string& path) {
-        return report::fault_of_report_name(path).value_or(std::string());
-      });
+      ->check(
+          [](const std::string& path) { return report::check_report_name(path).error().message; });
   add_payload_option(*command, "--payload", options->payload,
                      "what to count beside the core; default features,scan,grid");
   command->callback([options, &exit_code] {
     const report::Report page =
         report::make_pack_report(read_pack_report(options->folder, options->payload));
-    if (const auto problem = report::write_report(options->out, page)) {
-      throw std::runtime_error(*problem);
+    if (const auto written = report::write_report(options->out, page); !written) {
+      throw std::runtime_error(written.error().message);
     }
     exit_code = 0;
   });

@@ -43,12 +43,13 @@ std::optional<std::string> write_results(const ReplayArguments& arguments, const
   const std::string& model = arguments.can.empty() ? arguments.recording : arguments.can;
   const RunReportInput run{catalog.folder, model, result.summary, result.trace, baseline};
   if (!arguments.picture.empty()) {
-    if (auto problem = report::write_report(arguments.picture, make_run_picture(run))) {
-      return problem;
+    if (auto drawn = report::write_report(arguments.picture, make_run_picture(run)); !drawn) {
+      return drawn.error().message;
     }
   }
   if (arguments.report.empty()) return std::nullopt;
-  return report::write_report(arguments.report, make_run_report(run));
+  const auto written = report::write_report(arguments.report, make_run_report(run));
+  return written ? std::nullopt : std::optional(written.error().message);
 }
 
 // The end of a replay that worked: results, and whether a limit was exceeded.

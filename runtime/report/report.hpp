@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "runtime/report/svg.hpp"
 
-// A report: what is told in a sentence, in numbers, in figures and in tables; as a page or as a
+// A report: a result in one sentence, in numbers, in figures and in tables; as a page or as a
 // picture.
 namespace zonepack::report {
 
@@ -25,7 +25,7 @@ struct Figure {
 
 struct TableColumn {
   std::string name;
-  bool number = false;  // set to the right
+  bool number = false;  // aligned to the right
 };
 
 struct Table {
@@ -38,7 +38,7 @@ struct Table {
 struct Report {
   std::string title;
   std::string headline;  // the result in one sentence
-  std::string origin;    // from what it was made; small print
+  std::string origin;    // what it was made from; small print
   std::vector<Fact> facts;
   std::vector<Figure> figures;
   std::vector<Table> tables;
@@ -50,11 +50,10 @@ std::string to_html(const Report& report);
 // Everything on one sheet, top to bottom.
 Svg to_sheet(const Report& report);
 
-// Nothing for a name that write_report takes, else what is wrong with it: for checking usage.
-std::optional<std::string> fault_of_report_name(const std::string& path);
+// Whether write_report() takes this name; else kUsage.
+Outcome<void> check_report_name(const std::string& path);
 
-// Writes .html, .svg or .png (drawn by rsvg-convert), whole or not at all. Returns nothing when
-// written, else a complete message for the user.
-std::optional<std::string> write_report(const std::string& path, const Report& report);
+// Writes .html, .svg or .png (drawn by rsvg-convert), whole or not at all.
+Outcome<void> write_report(const std::string& path, const Report& report);
 
 }  // namespace zonepack::report

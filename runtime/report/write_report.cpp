@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 
 #include "platform/atomic_file.hpp"
@@ -13,18 +12,13 @@ namespace {
 
 constexpr const char* kInstead = "or write the report as .svg or .html instead";
 
-std::string cannot_write(const std::string& path, Error error) {
-  return path + ": cannot write the report: " +
-         (error.code == ErrorCode::kIo ? std::strerror(static_cast<int>(error.detail))
-                                       : to_string(error.code));
-}
-
-std::optional<std::string> write_text(const std::string& path, const std::string& text) {
+Outcome<void> write_text(const std::string& path, const std::string& text) {
   const Result<void> written = write_file_atomically(path, text);
-  return written ? std::nullopt : std::optional(cannot_write(path, written.error()));
+  if (!written) return cannot_write(path, written.error());
+  return {};
 }
 
-std::optional<std::string> write_png(const std::string& path, const std::string& svg) {
+Outcome<void> write_png(const std::string& path, const std::string& svg) {
   Result<AtomicFile> png = AtomicFile::create(path);
   if (!png) return cannot_write(path, png.error());
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> input(std::tmpfile(), &std::fclose);
@@ -36,33 +30,38 @@ std::optional<std::string> write_png(const std::string& path, const std::string&
   const Result<int> status = run_program({"rsvg-convert", "--format", "png", "--zoom", "2"},
                                          fileno(input.get()), png->descriptor());
   if (!status && status.error().code == ErrorCode::kNotFound) {
-    return path +
-           ": drawing PNG needs the program rsvg-convert: install the package librsvg2-bin, " +
-           kInstead;
+    return failure(
+        path + ": drawing PNG needs the program rsvg-convert: install the package librsvg2-bin, " +
+            kInstead,
+        ErrorCode::kNotFound);
   }
   if (!status) return cannot_write(path, status.error());
   if (*status != 0) {
-    return path + ": rsvg-convert failed with status " + std::to_string(*status) +
-           "; see its message above, " + kInstead;
+    return failure(path + ": rsvg-convert failed with status " + std::to_string(*status) +
+                       "; see its message above, " + kInstead,
+                   ErrorCode::kIo);
   }
   const Result<void> written = png->commit();
-  return written ? std::nullopt : std::optional(cannot_write(path, written.error()));
+  if (!written) return cannot_write(path, written.error());
+  return {};
 }
 
 }  // namespace
 
-std::optional<std::string> fault_of_report_name(const std::string& path) {
+Outcome<void> check_report_name(const std::string& path) {
   for (const char* kind : {".html", ".svg", ".png"}) {
-    if (path.ends_with(kind)) return std::nullopt;
+    if (path.ends_with(kind)) return {};
   }
-  return path + ": a report is written as .html, .svg or .png; the name ends in none of them";
+  return usage_failure(path +
+                       ": a report is written as .html, .svg or .png; the name ends in none of "
+                       "them");
 }
 
-std::optional<std::string> write_report(const std::string& path, const Report& report) {
+Outcome<void> write_report(const std::string& path, const Report& report) {
   if (path.ends_with(".html")) return write_text(path, to_html(report));
   if (path.ends_with(".svg")) return write_text(path, to_sheet(report).file_text());
   if (path.ends_with(".png")) return write_png(path, to_sheet(report).file_text());
-  return fault_of_report_name(path);
+  return check_report_name(path);
 }
 
 }  // namespace zonepack::report

@@ -77,7 +77,7 @@ void add_replay(CLI::App& app, ReplayArguments& arguments, int& exit_code) {
       "replay", "drives a recorded run through the robot's own cycle, on simulated time");
   const auto drawing = [&replay](const char* name, std::string& target, const char* help) {
     add_file(replay, name, target, help)->check([](const std::string& path) {
-      return zonepack::report::fault_of_report_name(path).value_or(std::string());
+      return zonepack::report::check_report_name(path).error().message;
     });
   };
   add_choices(replay, arguments);

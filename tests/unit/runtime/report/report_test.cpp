@@ -88,34 +88,37 @@ TEST(Report, WithNothingInItIsStillAPageAndASheet) {
 }
 
 TEST_F(ReportFileTest, TheNameDecidesTheKind) {
-  EXPECT_EQ(write_report(path("r.html"), sample()), std::nullopt);
+  EXPECT_TRUE(write_report(path("r.html"), sample()));
   EXPECT_EQ(read(path("r.html")), to_html(sample()));
-  EXPECT_EQ(write_report(path("r.svg"), sample()), std::nullopt);
+  EXPECT_TRUE(write_report(path("r.svg"), sample()));
   EXPECT_EQ(read(path("r.svg")), to_sheet(sample()).file_text());
-  EXPECT_EQ(write_report(path("r.png"), sample()), std::nullopt);
+  EXPECT_TRUE(write_report(path("r.png"), sample()));
   EXPECT_TRUE(read(path("r.png")).starts_with("\x89PNG\r\n"));
 }
 
 TEST_F(ReportFileTest, AnotherNameIsRefusedWithWhatIsAllowed) {
-  const std::optional<std::string> problem = write_report(path("r.pdf"), sample());
-  ASSERT_TRUE(problem.has_value());
-  EXPECT_NE(problem->find(path("r.pdf")), std::string::npos);
-  EXPECT_NE(problem->find(".html, .svg or .png"), std::string::npos);
+  const Outcome<void> written = write_report(path("r.pdf"), sample());
+  ASSERT_FALSE(written);
+  EXPECT_EQ(exit_code(written.error()), 2);
+  EXPECT_FALSE(check_report_name(path("r.pdf")));
+  EXPECT_TRUE(check_report_name(path("r.png")));
+  EXPECT_NE(written.error().message.find(path("r.pdf")), std::string::npos);
+  EXPECT_NE(written.error().message.find(".html, .svg or .png"), std::string::npos);
 }
 
 TEST_F(ReportFileTest, AMissingFolderIsNamed) {
-  const std::optional<std::string> problem = write_report(path("no/r.html"), sample());
-  ASSERT_TRUE(problem.has_value());
-  EXPECT_NE(problem->find("No such file or directory"), std::string::npos);
+  const Outcome<void> written = write_report(path("no/r.html"), sample());
+  ASSERT_FALSE(written);
+  EXPECT_NE(written.error().message.find("No such file or directory"), std::string::npos);
 }
 
 TEST_F(ReportFileTest, WithoutRsvgConvertItSaysWhatToInstallAndLeavesNothing) {
   const std::string old = ::getenv("PATH");
   ::setenv("PATH", folder_.path().c_str(), 1);
-  const std::optional<std::string> problem = write_report(path("r.png"), sample());
+  const Outcome<void> written = write_report(path("r.png"), sample());
   ::setenv("PATH", old.c_str(), 1);
-  ASSERT_TRUE(problem.has_value());
-  EXPECT_NE(problem->find("librsvg2-bin"), std::string::npos);
+  ASSERT_FALSE(written);
+  EXPECT_NE(written.error().message.find("librsvg2-bin"), std::string::npos);
   EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
@@ -125,10 +128,10 @@ TEST_F(ReportFileTest, AFailingRsvgConvertLeavesTheOldPicture) {
   fs::permissions(path("rsvg-convert"), fs::perms::owner_all);
   const std::string old = ::getenv("PATH");
   ::setenv("PATH", folder_.path().c_str(), 1);
-  const std::optional<std::string> problem = write_report(path("r.png"), sample());
+  const Outcome<void> written = write_report(path("r.png"), sample());
   ::setenv("PATH", old.c_str(), 1);
-  ASSERT_TRUE(problem.has_value());
-  EXPECT_NE(problem->find("status 3"), std::string::npos);
+  ASSERT_FALSE(written);
+  EXPECT_NE(written.error().message.find("status 3"), std::string::npos);
   EXPECT_EQ(read(path("r.png")), "old");
 }
 
