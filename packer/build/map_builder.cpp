@@ -33,6 +33,11 @@ fb::Node node_at(std::int32_t id, const Transform& T_map_base) {
   return {T_map_base[3], T_map_base[7], T_map_base[11], yaw, id};
 }
 
+std::vector<Damage> sorted(std::vector<Damage> damages) {
+  std::ranges::sort(damages, {}, [](const Damage& d) { return std::tie(d.signature, d.column); });
+  return damages;
+}
+
 class MapBuilder {
  public:
   MapBuilder(const BuildOptions& options, Progress& progress)
@@ -195,10 +200,7 @@ void MapBuilder::pack_zone(RtabmapDatabase& database, MapFolder& folder, std::si
 void MapBuilder::refuse_damaged() const {
   if (damages_.empty() || options_.damaged == DamagedPolicy::kSkip) return;
   constexpr std::size_t kShown = 20;
-  std::vector<Damage> shown = damages_;
-  std::sort(shown.begin(), shown.end(), [](const Damage& a, const Damage& b) {
-    return std::tie(a.signature, a.column) < std::tie(b.signature, b.column);
-  });
+  const std::vector<Damage> shown = sorted(damages_);
   std::string text =
       options_.database.string() + ": " + std::to_string(shown.size()) +
       " damaged signatures; repair the database, or leave them out with --damaged skip";
@@ -321,10 +323,7 @@ void MapBuilder::finish(MapFolder& folder) {
     }
     summary_.zone_names.push_back(plan_.zones[i].name);
   }
-  summary_.damages = damages_;
-  std::sort(summary_.damages.begin(), summary_.damages.end(), [](const Damage& a, const Damage& b) {
-    return std::tie(a.signature, a.column) < std::tie(b.signature, b.column);
-  });
+  summary_.damages = sorted(damages_);
   summary_.packs = std::move(packs_);
 }
 

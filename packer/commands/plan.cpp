@@ -65,7 +65,7 @@ nlohmann::ordered_json to_json(const MapPlan& plan, const PlanArguments& argumen
   json["slot_bytes"] = kSlotBytes;
   json["table_bytes_per_slot"] = kTableBytesPerSlot;
   json["zones"] = nlohmann::ordered_json::array();
-  for (const PlanZone& zone : plan.zones) {
+  for (const ZoneCost& zone : plan.zones) {
     json["zones"].push_back({{"name", zone.name},
                              {"signatures", zone.signatures},
                              {"slots", zone.slots},
@@ -112,7 +112,7 @@ void print(const BudgetPlan& b, const MapPlan& plan, std::ostream& out) {
 
 void print(const MapPlan& plan, std::ostream& out) {
   std::size_t width = 4;
-  for (const PlanZone& zone : plan.zones) width = std::max(width, zone.name.size());
+  for (const ZoneCost& zone : plan.zones) width = std::max(width, zone.name.size());
   const auto row = [&](const std::string& name, const auto& signatures, const auto& charged,
                        const auto& stored) {
     out << std::left << std::setw(static_cast<int>(width)) << name << std::right << std::setw(12)
@@ -121,7 +121,7 @@ void print(const MapPlan& plan, std::ostream& out) {
   row("zone", "signatures", "charged bytes", "stored bytes");
   out << "\n";
   std::uint64_t signatures = 0, charged = 0, stored = 0;
-  for (const PlanZone& zone : plan.zones) {
+  for (const ZoneCost& zone : plan.zones) {
     row(zone.name, zone.signatures, zone.charged_bytes, zone.stored_bytes);
     out << (zone.pinned ? "  pinned\n" : "\n");
     signatures += zone.signatures;

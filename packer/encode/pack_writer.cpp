@@ -6,9 +6,9 @@
 #include <lz4hc.h>
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 
+#include "platform/base/failure.hpp"
 #include "platform/base/require.hpp"
 
 namespace zonepack::packer {
@@ -20,11 +20,8 @@ constexpr std::uint32_t kWorthDecoding =
 constexpr std::uint64_t kWorthFilling = 1024;
 
 std::string message_of(const Error& error, const std::filesystem::path& folder) {
-  std::string text = folder.string() + ": cannot write a pack: " + to_string(error.code);
-  if (error.code == ErrorCode::kIo) {
-    text += " (" + std::string(std::strerror(static_cast<int>(error.detail))) + ")";
-  }
-  return text + "; check that the folder exists, is writable and has room";
+  return folder.string() + ": cannot write a pack: " + reason_text(error) +
+         "; check that the folder exists, is writable and has room";
 }
 
 AtomicFile open_part(const std::filesystem::path& folder) {

@@ -10,7 +10,7 @@
 
 namespace zonepack::packer {
 
-struct PlanZone {
+struct ZoneCost {
   std::string name;
   std::uint32_t signatures = 0;
   std::uint32_t slots = 0;
@@ -43,7 +43,7 @@ struct MapPlan {
   ByteCount fixed_bytes = 0;
   SmallestBudget smallest;
   ByteCount live_change_bytes = 0;
-  std::vector<PlanZone> zones;  // by ZoneId
+  std::vector<ZoneCost> zones;  // by ZoneId
   std::optional<BudgetPlan> budget;
 };
 

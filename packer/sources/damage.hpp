@@ -26,12 +26,12 @@ class DamagedSignature : public std::runtime_error {
 };
 
 // Where a value stands, so that whoever parses it can say so. Cheap to copy; refers to `file`.
-struct Place {
+struct CellPlace {
   const std::string* file = nullptr;
   std::int32_t signature = 0;  // 0: not inside a signature (Admin, Info)
   const char* column = "";
 
-  Place at(const char* other_column) const noexcept { return {file, signature, other_column}; }
+  CellPlace at(const char* other_column) const noexcept { return {file, signature, other_column}; }
 
   // Throws DamagedSignature, or std::runtime_error where no signature is to blame.
   [[noreturn]] void damaged(const std::string& problem) const;

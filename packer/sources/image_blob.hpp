@@ -12,11 +12,11 @@
 namespace zonepack::packer {
 
 // JPEG or PNG.
-void check_image(std::span<const std::byte> bytes, const Place& place);
+void check_image(std::span<const std::byte> bytes, const CellPlace& place);
 
 // Depth, or the right image of a stereo camera: PNG (16-bit millimetres, or the four bytes of a
 // float32), JPEG, RVL ("DEPTHRVL", columns, rows, stream), or inverse depth ("DEPTHINV" and two
 // float32) around a PNG or RVL.
-void check_depth(std::span<const std::byte> bytes, const Place& place);
+void check_depth(std::span<const std::byte> bytes, const CellPlace& place);
 
 }  // namespace zonepack::packer

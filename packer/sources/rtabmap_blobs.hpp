@@ -20,18 +20,19 @@ std::uint32_t scan_channels(std::int32_t format) noexcept;
 // angle min, angle max, increment, max points, local 12}. Databases of earlier versions may also
 // have 15 (from 0.16.1) {max points, range max, format, local 12} or 14 {max points, range max,
 // local 12}. An empty blob leaves format 0.
-void parse_scan_info(std::span<const std::byte> info, SchemaVersion version, const Place& place,
+void parse_scan_info(std::span<const std::byte> info, SchemaVersion version, const CellPlace& place,
                      Scan& scan);
 
 // A scan's points: float32, with the channels that its format says; 1 to 10 where it says none.
-void check_scan(const Scan& scan, const Place& place);
+void check_scan(const Scan& scan, const CellPlace& place);
 
 // The cells of a local grid: float32 with 2 (2D), 3, 4 or 6 (3D) channels.
-void check_grid_cells(const Matrix& cells, const Place& place);
+void check_grid_cells(const Matrix& cells, const CellPlace& place);
 
 // Camera calibrations. Since 0.18: records of mono or stereo cameras one after the other, each with
 // its sizes in front. Databases of earlier versions may also have 18 float32 a camera (16 before
 // 0.11.2), or 19 or 17 for one stereo camera.
-void check_calibration(std::span<const std::byte> bytes, SchemaVersion version, const Place& place);
+void check_calibration(std::span<const std::byte> bytes, SchemaVersion version,
+                       const CellPlace& place);
 
 }  // namespace zonepack::packer

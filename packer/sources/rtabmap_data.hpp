@@ -18,13 +18,13 @@ class DataReader {
   bool serves(const PayloadSet& wanted) const noexcept;
 
   // Replaces the parts of `out` that stand in Data.
-  void read(const Place& place, MatrixUnpacker& unpacker, SignatureRecord& out);
+  void read(const CellPlace& place, MatrixUnpacker& unpacker, SignatureRecord& out);
 
  private:
-  void read_images(const Place& place, MatrixUnpacker& unpacker, SignatureRecord& out);
-  void read_scan(const Place& place, MatrixUnpacker& unpacker, std::optional<Scan>& out);
-  void read_grid(const Place& place, MatrixUnpacker& unpacker, std::optional<Grid>& out);
-  bool read_matrix(int column, const Place& place, MatrixUnpacker& unpacker,
+  void read_images(const CellPlace& place, MatrixUnpacker& unpacker, SignatureRecord& out);
+  void read_scan(const CellPlace& place, MatrixUnpacker& unpacker, std::optional<Scan>& out);
+  void read_grid(const CellPlace& place, MatrixUnpacker& unpacker, std::optional<Grid>& out);
+  bool read_matrix(int column, const CellPlace& place, MatrixUnpacker& unpacker,
                    std::optional<Matrix>& out);
 
   PayloadSet wanted_;

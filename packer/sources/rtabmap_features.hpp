@@ -14,10 +14,10 @@ class FeatureReader {
   FeatureReader(const SqliteFile& file, const RtabmapSchema& schema);
 
   // Replaces `out`, keeping its memory. `place` names the file and signature.
-  void read(const Place& place, Features& out);
+  void read(const CellPlace& place, Features& out);
 
  private:
-  void append_descriptor(const Place& place, Features& out);
+  void append_descriptor(const CellPlace& place, Features& out);
 
   KeyedRows rows_;
   bool has_octave_;

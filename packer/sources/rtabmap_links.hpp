@@ -15,10 +15,10 @@ namespace zonepack::packer {
 class LinkReader {
  public:
   LinkReader(const SqliteFile& file, const RtabmapSchema& schema);
-  void read(const Place& place, MatrixUnpacker& unpacker, std::vector<Link>& out);
+  void read(const CellPlace& place, MatrixUnpacker& unpacker, std::vector<Link>& out);
 
  private:
-  void read_information(const Place& place, Link& link) const;
+  void read_information(const CellPlace& place, Link& link) const;
 
   KeyedRows rows_;
   bool has_variances_;  // before 0.13: two variances instead of an information matrix
@@ -28,7 +28,7 @@ class LinkReader {
 class GlobalDescriptorReader {
  public:
   GlobalDescriptorReader(const SqliteFile& file, const RtabmapSchema& schema);
-  void read(const Place& place, MatrixUnpacker& unpacker, std::vector<GlobalDescriptor>& out);
+  void read(const CellPlace& place, MatrixUnpacker& unpacker, std::vector<GlobalDescriptor>& out);
 
  private:
   KeyedRows rows_;

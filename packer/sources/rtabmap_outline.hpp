@@ -13,7 +13,7 @@ std::string node_columns(const RtabmapSchema& schema);
 // Reads the identity of a node from a row of node_columns(); the rest of the row follows from
 // kFirstNodeDetail on: ground_truth_pose, velocity, gps, env_sensors.
 inline constexpr int kFirstNodeDetail = 6;
-void read_node(const SqliteQuery& row, const Place& place, NodeOutline& node);
+void read_node(const SqliteQuery& row, const CellPlace& place, NodeOutline& node);
 
 // Reads the whole outline. Damage inside one node goes to MapOutline::damages; what makes the
 // database as a whole unusable (optimised poses that do not match their ids) is thrown.

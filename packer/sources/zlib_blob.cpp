@@ -42,7 +42,7 @@ MatrixUnpacker::MatrixUnpacker() {
 
 MatrixUnpacker::~MatrixUnpacker() { inflateEnd(&stream_); }
 
-void MatrixUnpacker::unpack(std::span<const std::byte> blob, const Place& place, Matrix& out) {
+void MatrixUnpacker::unpack(std::span<const std::byte> blob, const CellPlace& place, Matrix& out) {
   if (blob.size() <= kTrailerBytes) {
     place.damaged("expected a compressed matrix (zlib stream and 12 bytes of size), found " +
                   std::to_string(blob.size()) + " bytes");

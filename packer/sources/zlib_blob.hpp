@@ -35,7 +35,7 @@ class MatrixUnpacker {
   // limit and against what the stream can hold before any memory is taken. Reports to `place` when
   // the stream is not whole, does not have exactly the declared size, or is followed by other
   // bytes.
-  void unpack(std::span<const std::byte> blob, const Place& place, Matrix& out);
+  void unpack(std::span<const std::byte> blob, const CellPlace& place, Matrix& out);
 
  private:
   z_stream stream_{};

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "packer/verify/map_source.hpp"
+#include "packer/verify/map_files.hpp"
 #include "packer/verify/problem.hpp"
 
 namespace zonepack::packer {
@@ -24,9 +24,9 @@ struct Verdict {
 // truth about them: files, digests, counts, bytes, slots, nodes, edges, and signatures unique and
 // in the zone that the zone-in rule gives. With a manifest that cannot be trusted, the packs in the
 // folder are checked by themselves. Files that the manifest does not name are listed, not judged.
-Verdict verify_map(const MapSource& map);
+Verdict verify_map(const MapFiles& map);
 
 // Checks one pack by itself.
-Verdict verify_one_pack(const MapSource& folder, const std::string& name);
+Verdict verify_one_pack(const MapFiles& folder, const std::string& name);
 
 }  // namespace zonepack::packer

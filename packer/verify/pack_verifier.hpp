@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "packer/verify/map_source.hpp"
+#include "packer/verify/map_files.hpp"
 #include "packer/verify/pack_facts.hpp"
 #include "packer/verify/problem.hpp"
 
@@ -16,7 +16,7 @@ namespace zonepack::packer {
 // holds when header, index and tail are whole, else nothing.
 //
 // Memory: the pack's decoded chunks. `name` is for the messages.
-std::optional<PackFacts> verify_pack(const FileSource& file, const std::string& name,
+std::optional<PackFacts> verify_pack(const MapFile& file, const std::string& name,
                                      Problems& problems);
 
 }  // namespace zonepack::packer

@@ -44,7 +44,7 @@ std::string to_string(const Problem& problem);
 
 nlohmann::ordered_json to_json(const Problem& problem);
 
-// "i/o error (Input/output error)", "truncated".
-std::string to_text(const Error& error);
+// "features", or the number of a kind that this version does not know.
+std::string kind_text(fb::PayloadKind kind);
 
 }  // namespace zonepack::packer

@@ -34,6 +34,6 @@ struct Drawing {
 };
 
 // Reads each feature for itself; what is wrong with it becomes a fault.
-Drawing read_drawing(const std::vector<Feature>& features, Findings& findings);
+Drawing read_drawing(const std::vector<GeoJsonFeature>& features, Findings& findings);
 
 }  // namespace zonepack::packer

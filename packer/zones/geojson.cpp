@@ -46,9 +46,9 @@ class LineCountingIterator {
 };
 
 // Follows the parser: where each feature begins, and which keys stand twice.
-class Follower {
+class ParseObserver {
  public:
-  Follower(const std::size_t& line, Findings& findings) : line_(line), findings_(findings) {}
+  ParseObserver(const std::size_t& line, Findings& findings) : line_(line), findings_(findings) {}
 
   bool operator()(int depth, json::parse_event_t event, const json& parsed) {
     if (depth > kMaxDepth) throw TooDeep{};
@@ -103,18 +103,18 @@ std::string plain_reason(const std::string& what) {
 
 }  // namespace
 
-std::vector<Feature> read_features(std::string_view text, Findings& findings) {
+std::vector<GeoJsonFeature> read_features(std::string_view text, Findings& findings) {
   const auto fault = [&](std::size_t line, std::string message) {
     findings.faults.push_back({std::nullopt, line, "", std::move(message)});
   };
   std::size_t line = 1;
-  Follower follower(line, findings);
+  ParseObserver observer(line, findings);
   json root;
   try {
     root = json::parse(LineCountingIterator(text.data(), &line),
                        LineCountingIterator(text.data() + text.size(), &line),
                        [&](int depth, json::parse_event_t event, json& parsed) {
-                         return follower(depth, event, parsed);
+                         return observer(depth, event, parsed);
                        });
   } catch (const TooDeep&) {
     fault(line,
@@ -138,11 +138,11 @@ std::vector<Feature> read_features(std::string_view text, Findings& findings) {
     fault(1, "expected \"features\": [ … ], the list of zones and portals");
     return {};
   }
-  std::vector<Feature> features;
+  std::vector<GeoJsonFeature> features;
   std::size_t objects = 0;
   for (std::size_t i = 0; i < list->size(); ++i) {
     json& value = (*list)[i];
-    const std::size_t at = value.is_object() ? follower.feature_lines().at(objects++) : 0;
+    const std::size_t at = value.is_object() ? observer.feature_lines().at(objects++) : 0;
     if (value.is_object() && value.value("type", json()) == "Feature") {
       features.push_back({i, at, std::move(value)});
     } else {

@@ -11,7 +11,7 @@
 // GeoJSON as text becomes a list of features that remember their lines.
 namespace zonepack::packer {
 
-struct Feature {
+struct GeoJsonFeature {
   std::size_t index = 0;  // place in the file's list, from 0
   std::size_t line = 0;   // where it begins, from 1
   nlohmann::json value;   // an object
@@ -20,6 +20,6 @@ struct Feature {
 // Strict: one FeatureCollection; a key stands once in an object; numbers are finite; the text is
 // UTF-8. Whatever is wrong becomes a fault with its line; what can be read is returned all the
 // same.
-std::vector<Feature> read_features(std::string_view text, Findings& findings);
+std::vector<GeoJsonFeature> read_features(std::string_view text, Findings& findings);
 
 }  // namespace zonepack::packer

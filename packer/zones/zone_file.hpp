@@ -10,7 +10,7 @@
 // Reads the zone file: a GeoJSON FeatureCollection in metres of the map frame.
 //
 // Zones: Polygon features (holes allowed, rings closed) with properties
-//   name       required, unique; see why_unfit_name()
+//   name       required, unique; see find_name_problem()
 //   zone_type  ("ward"; a zone without one gives a warning), label, layer, floor: text, optional
 //   z_min, z_max  metres, optional: the zone of one floor of a building (PlannedZone)
 // Portals: LineString features of two positions with properties
@@ -46,9 +46,9 @@ ZoneFile check_zone_file(const std::string& path, double snap_m = kDefaultSnap_m
 // For packing: throws std::runtime_error that lists every fault. The findings hold warnings only.
 ZoneFile load_zone_file(const std::string& path, double snap_m = kDefaultSnap_m);
 
-// Why a name cannot name a zone or portal; empty when it can. Names become parts of file names and
-// stand unescaped in event logs: 1 to 64 bytes of UTF-8 without control characters, / \ and ", not
-// beginning or ending with a blank, and not beginning with a dot.
-std::string why_unfit_name(std::string_view name);
+// Why a name cannot name a zone or portal ("it is empty"); nothing when it can. Names become parts
+// of file names and stand unescaped in event logs: 1 to 64 bytes of UTF-8 without control
+// characters, / \ and ", not beginning or ending with a blank, and not beginning with a dot.
+std::optional<std::string> find_name_problem(std::string_view name);
 
 }  // namespace zonepack::packer

@@ -13,7 +13,7 @@
 namespace zonepack::packer {
 
 struct PlannedZone {
-  std::string name;    // unique; see why_unfit_name()
+  std::string name;    // unique; see find_name_problem()
   std::string parent;  // the zone this is a part of when it was split; else empty
   std::string zone_type, label, layer, floor;  // empty when the file has none
   // Only signatures with z_min_m <= z < z_max_m belong to the zone; nullopt: no bound.
@@ -43,6 +43,9 @@ bool share_a_height(const PlannedZone& a, const PlannedZone& b) noexcept;
 // Sorts zones and portals by name and lets the portals follow their zones. Returns, for each old
 // place of a zone, its new one.
 std::vector<std::uint32_t> sort_by_name(ZonePlan& plan);
+
+// How many portals lead into each zone.
+std::vector<std::size_t> portals_per_zone(const ZonePlan& plan);
 
 // "A-B", or "A-B.2" and so on when that is taken, for a portal that nobody named; long zone names
 // are shortened. The name is added to `taken`.

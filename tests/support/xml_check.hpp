@@ -12,7 +12,7 @@ namespace zonepack {
 // quoted attributes, the five named entities and character references; all that reports use.
 class XmlCheck {
  public:
-  static std::string fault_of(std::string_view text) { return XmlCheck(text).run(); }
+  static std::string problem_in(std::string_view text) { return XmlCheck(text).run(); }
 
  private:
   explicit XmlCheck(std::string_view text) : text_(text) {}

@@ -37,6 +37,13 @@ struct MapCosts {
   std::vector<ZonePair> neighbours;       // of every portal
 };
 
+// Bytes of a zone's chunks of these kinds, and of the kinds that they imply (payload_closure).
+struct ChunkBytes {
+  ByteCount stored = 0;
+  ByteCount decoded = 0;
+};
+ChunkBytes chunk_bytes(const fb::Zone& zone, PayloadMask wanted) noexcept;
+
 // Costs of a checked manifest when these kinds are loaded.
 MapCosts map_costs(const fb::Manifest& manifest, PayloadMask wanted);
 

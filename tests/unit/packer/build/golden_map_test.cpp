@@ -56,7 +56,7 @@ std::string read_text(const std::filesystem::path& path) {
 }
 
 TEST_F(GoldenMap, IsWhole) {
-  const Verdict verdict = verify_map(FolderSource(kGolden / "map"));
+  const Verdict verdict = verify_map(FolderFiles(kGolden / "map"));
   for (const Problem& problem : verdict.problems) ADD_FAILURE() << to_string(problem);
   EXPECT_EQ(verdict.packs, 3u);
   EXPECT_EQ(verdict.signatures, 8u);

@@ -42,7 +42,7 @@ class ReportFileTest : public testing::Test {
 
 TEST(Report, AsAPageIsWellFormedAndHoldsEverything) {
   const std::string html = to_html(sample());
-  EXPECT_EQ(XmlCheck::fault_of(html), "");
+  EXPECT_EQ(XmlCheck::problem_in(html), "");
   for (const char* part :
        {"<h1>Map &lt;hospital&gt;</h1>", "24 zones &amp; 185 signatures.", ">drawn</text>",
         "How to read it.", "<td>L1</td><td class=\"n\">12</td>", "<td>H1</td><td class=\"n\"></td>",
@@ -62,7 +62,7 @@ TEST(Report, AsAPageNeedsNothingFromOutside) {
 
 TEST(Report, AsASheetHoldsEverything) {
   const std::string svg = to_sheet(sample()).file_text();
-  EXPECT_EQ(XmlCheck::fault_of(svg), "");
+  EXPECT_EQ(XmlCheck::problem_in(svg), "");
   for (const char* part :
        {">Map &lt;hospital&gt;<", ">drawn<", ">How to read it.<", ">12<", ">must be 0<"}) {
     EXPECT_EQ(count_of(svg, part), 1u) << part;
@@ -83,8 +83,8 @@ TEST(Report, AWideTableGivesWayInItsWidestColumn) {
 }
 
 TEST(Report, WithNothingInItIsStillAPageAndASheet) {
-  EXPECT_EQ(XmlCheck::fault_of(to_html(Report{})), "");
-  EXPECT_EQ(XmlCheck::fault_of(to_sheet(Report{}).file_text()), "");
+  EXPECT_EQ(XmlCheck::problem_in(to_html(Report{})), "");
+  EXPECT_EQ(XmlCheck::problem_in(to_sheet(Report{}).file_text()), "");
 }
 
 TEST_F(ReportFileTest, TheNameDecidesTheKind) {
