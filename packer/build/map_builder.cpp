@@ -18,7 +18,7 @@
 namespace zonepack::packer {
 namespace {
 
-constexpr std::uint64_t kFeatureRowBytes = 72;  // what a row of the Feature table takes
+constexpr std::uint64_t kFeatureRowBytes = 72;  // size of a row of the Feature table
 
 PayloadSet payload_set(PayloadMask mask) {
   const auto has = [mask](fb::PayloadKind kind) { return (mask & mask_of(kind)) != 0; };
@@ -28,7 +28,7 @@ PayloadSet payload_set(PayloadMask mask) {
 }
 
 fb::Node node_at(std::int32_t id, const Transform& T_map_base) {
-  // Yaw is for people and pictures: row-major 3x4, so [0] and [4] are cos and sin of it.
+  // Yaw is for people and pictures. The pose is a row-major 3x4 matrix: [0] is cos, [4] is sin.
   const float yaw = std::atan2(T_map_base[4], T_map_base[0]);
   return {T_map_base[3], T_map_base[7], T_map_base[11], yaw, id};
 }
@@ -73,11 +73,11 @@ class MapBuilder {
   ZoneFile zones_;
   BuildSummary summary_;
 
-  std::vector<SignaturePlace> places_;  // of signatures that are packed, by id
-  std::vector<fb::Node> nodes_;         // the same
+  std::vector<SignaturePlace> places_;  // of the signatures to pack, by id
+  std::vector<fb::Node> nodes_;         // of the same signatures
   ZonePlan plan_;
   std::vector<std::uint32_t> zone_of_;
-  std::vector<std::vector<std::size_t>> members_;  // by zone: places in places_
+  std::vector<std::vector<std::size_t>> members_;  // by zone: indices into places_
   std::vector<PackSummary> packs_;
   std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> links_;  // by zone: from, to
   std::set<std::int32_t> skipped_;                                         // damaged
@@ -218,8 +218,8 @@ ByteCount MapBuilder::charged(std::size_t zone) const {
          kSlotBytes;
 }
 
-// Weights are shares of decoded bytes; what slots round up on top is found by packing the parts,
-// with a lower limit each time one comes out too large.
+// Weights are shares of decoded bytes. Only packing the parts shows how much the slots round up, so
+// this packs again with a lower limit for as long as a part comes out too large.
 void MapBuilder::split(MapFolder& folder) {
   const auto largest = [this] {
     ByteCount most = 0;

@@ -133,7 +133,8 @@ void print_signatures(const SignatureCounts& counts, const ZonePlan& plan, std::
   if (orphans.size() > kOrphansPrinted) {
     text << "  and " << orphans.size() - kOrphansPrinted << " more (--json lists all)\n";
   }
-  if (!orphans.empty()) text << "  build gives them to the nearest zone unless told by --orphans\n";
+  if (!orphans.empty())
+    text << "  build gives them to the nearest zone unless --orphans says otherwise\n";
   if (counts.unlinked > 0) {
     text << "warning: " << plural(counts.unlinked, "signature")
          << " without an optimised pose not counted; build places them as --unlinked says\n";

@@ -205,7 +205,7 @@ void add_outline_command(CLI::App& app, int& exit_code) {
       "from the\n"
       "local grids), map.wld (for QGIS), signatures.geojson and trajectories.geojson, all in "
       "metres of\n"
-      "the map frame. Files of an earlier run are replaced only when all are written.");
+      "the map frame. Files of an earlier run are replaced only after all have been written.");
   command->callback([arguments, &exit_code] {
     ordered_json json;
     write_outline(arguments->options, arguments->json.text(), json);

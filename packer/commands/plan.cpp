@@ -19,9 +19,9 @@ constexpr char kFormulas[] =
     "smallest budget    = fixed + (pinned + largest pair of neighbours) x slot\n"
     "live change of map = smallest budget + fixed + largest zone x slot\n"
     "where slot is a slot with its tables, and fixed are tables, manifest, zone graph and read\n"
-    "buffers. While a map changes, both maps' tables stand, and the robot's zone of the new map "
+    "buffers. While a map changes, both maps' tables exist, and the robot's zone of the new map "
     "is\n"
-    "loaded beside the pair of the old one; the new map is taken to be as large as this one.\n"
+    "loaded besides the pair of the old one; the new map is assumed to be as large as this one.\n"
     "Exit code 1 when --budget is below the smallest.";
 
 struct PlanArguments {
@@ -143,14 +143,14 @@ void print(const MapPlan& plan, std::ostream& out) {
 void add_plan_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<PlanArguments>();
   CLI::App* const command =
-      app.add_subcommand("plan", "Tell what a map costs in memory, and what a budget allows");
+      app.add_subcommand("plan", "Show what a map costs in memory, and what a budget allows");
   command->footer(kFormulas);
   command->add_option("DIR", arguments->folder, "folder of the map")->required();
   CLI::Option* const budget =
-      add_size_option(*command, "--budget", arguments->budget, "tell what this budget allows");
+      add_size_option(*command, "--budget", arguments->budget, "show what this budget allows");
   CLI::Option* const payload =
       add_payload_option(*command, "--payload", arguments->payload,
-                         "what to load beside the core; default features,scan,grid");
+                         "what to load besides the core; default features,scan,grid");
   command->add_option("--pin", arguments->pins, "a zone that is always held; repeatable")
       ->type_name("ZONE")
       ->take_all()

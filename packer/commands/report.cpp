@@ -97,7 +97,7 @@ void add_report_command(CLI::App& app, int& exit_code) {
       ->check(
           [](const std::string& path) { return report::check_report_name(path).error().message; });
   add_payload_option(*command, "--payload", options->payload,
-                     "what to count beside the core; default features,scan,grid");
+                     "what to count besides the core; default features,scan,grid");
   command->callback([options, &exit_code] {
     const report::Report page =
         report::make_pack_report(read_pack_report(options->folder, options->payload));

@@ -20,7 +20,7 @@ const char* codec_text(fb::ChunkCodec codec) {
   return codec == fb::ChunkCodec::Lz4 ? "lz4" : "raw";
 }
 
-// Where the chunks of the default payload go; nothing for the others.
+// Where chunks of the default payload are placed; nothing for other chunks.
 std::vector<std::optional<Placement::Place>> places_of(const fb::PackIndex& index) {
   const PayloadMask mask = payload_closure(kDefaultPayload, index.grid_needs_scan());
   Placement placement;

@@ -6,9 +6,9 @@
 
 #include "packer/sources/damage.hpp"
 
-// Images are carried as stored and never decoded, so only their kind is looked at: a picture that a
-// camera delivered without its last bytes is still a picture, and its decoder's business. Empty
-// bytes pass.
+// Images are packed as stored and never decoded, so only their kind is checked: a picture that a
+// camera delivered without its last bytes is still a picture, left to its decoder. Empty bytes
+// pass.
 namespace zonepack::packer {
 
 // JPEG or PNG.

@@ -9,15 +9,15 @@
 
 namespace zonepack::packer {
 
-// The row of table Data of one signature at a time: calibration, scan, grid, images, user data.
-// Columns of payloads that are not wanted are not read from the file.
+// Reads the row of table Data of one signature at a time: calibration, scan, grid, images, user
+// data. Does not read columns of payloads that are not wanted.
 class DataReader {
  public:
   DataReader(const SqliteFile& file, const RtabmapSchema& schema, const PayloadSet& wanted);
 
   bool serves(const PayloadSet& wanted) const noexcept;
 
-  // Replaces the parts of `out` that stand in Data.
+  // Replaces the parts of `out` that are stored in Data.
   void read(const CellPlace& place, MatrixUnpacker& unpacker, SignatureRecord& out);
 
  private:

@@ -8,7 +8,7 @@
 
 namespace zonepack::packer {
 
-// The keypoints of one signature at a time.
+// Reads the keypoints of one signature at a time.
 class FeatureReader {
  public:
   FeatureReader(const SqliteFile& file, const RtabmapSchema& schema);

@@ -57,7 +57,7 @@ void LinkReader::read(const CellPlace& place, MatrixUnpacker& unpacker, std::vec
   });
 }
 
-// Before 0.13 RTAB-Map stored two variances; its later versions read them as this diagonal.
+// RTAB-Map before 0.13 stored two variances; later versions read them as this diagonal.
 void LinkReader::read_information(const CellPlace& place, Link& link) const {
   const SqliteQuery& row = rows_.row();
   const CellPlace matrix = place.at("Link.information_matrix");

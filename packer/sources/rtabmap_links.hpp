@@ -11,7 +11,7 @@
 
 namespace zonepack::packer {
 
-// The links that start at one signature at a time, sorted by type, then destination.
+// Reads the links that start at one signature at a time, sorted by type, then destination.
 class LinkReader {
  public:
   LinkReader(const SqliteFile& file, const RtabmapSchema& schema);
@@ -24,7 +24,7 @@ class LinkReader {
   bool has_variances_;  // before 0.13: two variances instead of an information matrix
 };
 
-// The global descriptors of one signature at a time, in the order of the table.
+// Reads the global descriptors of one signature at a time, in table order.
 class GlobalDescriptorReader {
  public:
   GlobalDescriptorReader(const SqliteFile& file, const RtabmapSchema& schema);

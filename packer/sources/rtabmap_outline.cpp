@@ -138,7 +138,7 @@ void read_optimised_map(const SqliteFile& file, const RtabmapSchema& schema, Map
   if (!row.step()) return;
   AdminMatrix cells = admin_matrix(file, row, 0, "Admin.opt_map", kInt8);
   if (!cells.present) return;
-  // Drawn, not packed: the nearest float32 will do.
+  // Drawn, not packed, so the nearest float32 will do.
   const auto number = [&](int column, const char* name) {
     const CellPlace place{&file.name(), 0, name};
     const double value = finite_cell(row, column, place);
@@ -193,7 +193,7 @@ void read_totals(const SqliteFile& file, const RtabmapSchema& schema, MapOutline
   }
 }
 
-// For what the map can do without: a part that cannot be read is told, not fatal.
+// For parts that the map can do without: an unreadable part gives a warning, not an error.
 template <typename Read>
 void read_if_possible(MapOutline& outline, const char* without, Read read) {
   try {

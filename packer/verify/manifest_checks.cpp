@@ -38,7 +38,7 @@ class ZoneComparison {
                               std::to_string(found));
   }
 
-  // False when it is another pack than the one named: nothing else is comparable.
+  // False when this is another pack than the one named: then nothing else is comparable.
   bool names() {
     const std::string name = zone_.name()->str();
     const std::string file = name + "-" + to_hex(pack_.digest).substr(0, 16) + ".zpk";

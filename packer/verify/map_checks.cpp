@@ -17,7 +17,7 @@ std::string name_of(const fb::Manifest& manifest, std::uint32_t zone) {
   return manifest.zones()->Get(zone)->name()->str();
 }
 
-// The zone of every signature; tells those that are in two.
+// The zone of every signature; reports signatures that are in two.
 std::map<std::int32_t, std::uint32_t> zones_by_id(const fb::Manifest& manifest, const Packs& packs,
                                                   Contradictions& contradictions) {
   std::map<std::int32_t, std::uint32_t> zone_of;
@@ -104,8 +104,8 @@ void check_portals(const fb::Manifest& manifest, Contradictions& contradictions)
   }
 }
 
-// The zone-in rule among the zones as they were before they were split; parts of one zone share its
-// signatures by a rule of their own.
+// Checks the zone-in rule among the zones as they were before they were split; parts of one zone
+// share its signatures by a rule of their own.
 void check_places(const fb::Manifest& manifest, const Packs& packs,
                   Contradictions& contradictions) {
   std::vector<PlannedZone> zones;

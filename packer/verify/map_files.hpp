@@ -11,7 +11,7 @@
 
 #include "platform/base/result.hpp"
 
-// Where the files of a map come from: a folder, or memory.
+// The files of a map, from a folder or from memory.
 namespace zonepack::packer {
 
 class MapFile {
@@ -31,7 +31,7 @@ class MapFiles {
   virtual Result<std::unique_ptr<MapFile>> open(const std::string& name) const = 0;
 };
 
-// The files of a folder.
+// The regular files of a folder.
 class FolderFiles : public MapFiles {
  public:
   // Throws std::runtime_error when there is no such folder.

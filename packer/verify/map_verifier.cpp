@@ -57,7 +57,7 @@ class MapVerifier {
     return std::move(verdict_);
   }
 
-  // Facts are missing when the pack's frame is damaged.
+  // No facts when the header, index or tail of the pack is damaged.
   std::optional<PackFacts> check_pack(const std::string& name, const std::string& zone) {
     ++verdict_.packs;
     Result<std::unique_ptr<MapFile>> file = map_.open(name);

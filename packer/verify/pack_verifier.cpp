@@ -181,7 +181,7 @@ bool PackVerifier::read_chunk(std::uint32_t place, const fb::ChunkEntry& entry) 
                     " that the index holds",
                 kCopyAgain);
   }
-  if (kind == nullptr) return true;  // of a newer version: nothing more is known
+  if (kind == nullptr) return true;  // of a newer version: nothing more can be checked
   auto slot = std::make_unique_for_overwrite<Slot>();
   const Result<ByteSpan> decoded = decode_chunk(entry, stored, slot->bytes);
   if (!decoded) {
@@ -252,7 +252,7 @@ void PackVerifier::check_claims() {
 void PackVerifier::check_bounds() {
   for (std::uint32_t i = 0; i < index_->chunks()->size(); ++i) {
     const fb::ChunkEntry& entry = *index_->chunks()->Get(i);
-    if (entry.last_signature() >= facts_.nodes.size()) continue;  // told by check_claims()
+    if (entry.last_signature() >= facts_.nodes.size()) continue;  // reported by check_claims()
     const auto position = [this](std::uint32_t ordinal) {
       const Transform& T = facts_.nodes[ordinal].T_map_base;
       return std::pair(T[3], T[7]);

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-// One feature under reading: its properties, and faults that name it.
+// One feature being read: its properties, and the faults that name it.
 class DrawnFeature {
  public:
   DrawnFeature(const GeoJsonFeature& feature, Findings& findings)
@@ -142,7 +142,7 @@ class DrawnFeature {
   std::string name_;
 };
 
-// The name as given; faults when it cannot be used.
+// The name as given; reports a fault when it cannot be used.
 std::string fit_name(DrawnFeature& reader, const std::string& kind, std::string name) {
   reader.call_it(kind, name);
   if (const auto problem = find_name_problem(name)) {
@@ -198,7 +198,7 @@ void read_zone(const GeoJsonFeature& feature, DrawnFeature& reader, Drawing& dra
   drawing.zones.push_back(std::move(drawn));
 }
 
-// A portal may have its name from the feature's id.
+// A portal without a name property takes the feature's id.
 std::string portal_name_given(const GeoJsonFeature& feature, DrawnFeature& reader) {
   std::string name = reader.text("name");
   if (!name.empty()) return name;

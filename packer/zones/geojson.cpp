@@ -12,11 +12,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMaxDepth =
-    64;  // GeoJSON needs 8; copying and printing a value take stack for each level
+// GeoJSON needs 8 levels; copying and printing a value take stack for each one.
+constexpr int kMaxDepth = 64;
 struct TooDeep {};
 
-// Hands the text to the JSON parser and counts the lines that it has taken.
+// Feeds the text to the JSON parser and counts the lines consumed.
 class LineCountingIterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -45,7 +45,7 @@ class LineCountingIterator {
   std::size_t* line_;
 };
 
-// Follows the parser: where each feature begins, and which keys stand twice.
+// Watches the parser: records where each feature begins, and reports duplicate keys.
 class ParseObserver {
  public:
   ParseObserver(const std::size_t& line, Findings& findings) : line_(line), findings_(findings) {}
@@ -91,7 +91,7 @@ class ParseObserver {
   std::vector<std::size_t> feature_lines_;
 };
 
-// nlohmann's text without its "[json.exception.…]" mark and without the position, which we give.
+// nlohmann's message without its "[json.exception.…]" mark and line, which the finding has.
 std::string plain_reason(const std::string& what) {
   std::size_t from = what.find("] ");
   from = from == std::string::npos ? 0 : from + 2;

@@ -18,10 +18,10 @@ namespace zonepack::packer {
 namespace {
 
 constexpr double kSeam_m = 1e-6;         // parts touch along a cut exactly, up to rounding
-constexpr double kLeastPortal_m = 1e-3;  // a shorter rest of a portal goes with its neighbour
+constexpr double kLeastPortal_m = 1e-3;  // a shorter rest of a portal joins its neighbour
 constexpr std::size_t kSignaturesNamed = 10;
 
-// What became of one zone: its parts stand in the new plan from `first` on.
+// The parts of one zone: a range of the new plan's zones.
 struct PartRange {
   std::uint32_t first = 0, count = 0;
   std::vector<Segment2> seams;
@@ -37,10 +37,10 @@ Point2 between(const Segment2& s, double t) noexcept {
   return {s.p.x_m + t * (s.q.x_m - s.p.x_m), s.p.y_m + t * (s.q.y_m - s.p.y_m)};
 }
 
-// Where along a portal, from 0 to 1, the zone behind it was cut.
+// Where along a portal, from 0 to 1, the zone was cut.
 std::vector<double> stops_along(const Segment2& portal, const Polygon& zone,
                                 const std::vector<Segment2>& seams) {
-  double reach = 0;  // a cut ends on the zone's border, and the portal may stand off it
+  double reach = 0;  // a cut ends on the zone's border, but the portal may be off it
   for (const double t : {0.0, 0.5, 1.0}) {
     reach = std::max(reach, distance_to_border_m(zone, between(portal, t)));
   }
@@ -154,7 +154,7 @@ class PlanSplitter {
     return name;
   }
 
-  // The rule of partition.hpp among the parts, which it takes sorted by name.
+  // Applies the rule of partition.hpp to the parts, which it needs sorted by name.
   void give_out(const std::vector<std::size_t>& indices, const PartRange& range) {
     std::vector<std::uint32_t> order;
     for (std::uint32_t i = 0; i < range.count; ++i) order.push_back(range.first + i);
