@@ -123,7 +123,7 @@ double text_width_em(std::string_view text, bool bold) noexcept {
 std::string shorten_text(std::string_view text, double width_em) {
   constexpr std::string_view kCut = "...";
   if (text_width_em(text) <= width_em) return std::string(text);
-  std::size_t kept = 0;  // bytes, ends before a character
+  std::size_t kept = 0;  // bytes, up to the start of a character
   for (std::size_t next = 1; next < text.size(); ++next) {
     if (continues_utf8(text[next])) continue;
     if (text_width_em(text.substr(0, next)) + text_width_em(kCut) > width_em) break;

@@ -11,12 +11,12 @@
 
 #include "platform/gpio_line.hpp"
 
-// What every GpioPort must hold, whatever is behind it. A program includes this file once and names
+// What every GpioPort must do, whatever is behind it. A program includes this file once and names
 // its rigs with INSTANTIATE_TEST_SUITE_P(NAME, GpioLineContract, testing::Values(make_rig, ...)).
 namespace zonepack {
 
-// A port under test with a chip of 8 lines, all low, of which line 3 is named "door"; and a hand on
-// their other ends.
+// A port under test with a chip of 8 lines, all low, of which line 3 is named "door", with control
+// of their other ends.
 class GpioRig {
  public:
   virtual ~GpioRig() = default;
@@ -59,7 +59,7 @@ class GpioLineContract : public testing::TestWithParam<GpioRigMaker> {
     return opened ? std::move(opened).value() : nullptr;
   }
 
-  // What has settled; a moment later, as kernels have threads that read lines.
+  // The settled edges, taken a moment later, since kernels read lines on threads of their own.
   std::vector<GpioEdge> edges(GpioInput& from, std::size_t most = 64) {
     rig_->pass(20 * kMs);
     std::vector<GpioEdge> into(most);

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <vector>
 
-// What the page cache holds of a file, as mincore tells it.
+// What the page cache holds of a file, according to mincore.
 namespace zonepack::test_support {
 
 inline std::uint64_t cached_bytes(const std::filesystem::path& path) {

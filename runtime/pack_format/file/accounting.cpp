@@ -30,7 +30,7 @@ std::uint64_t chunks_of(const fb::Zone& zone) {
   return count;
 }
 
-// By ZoneId; ids beyond the last zone mark nothing.
+// Marks by ZoneId; ignores ids beyond the last zone.
 std::vector<bool> marked(std::span<const ZoneId> zones, std::size_t count) {
   std::vector<bool> marks(count, false);
   for (const ZoneId zone : zones) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map written once by version 1.0 of the format and never again: later versions must read it.
+// A map written once in version 1.0 of the format: later versions must read it.
 #include <gtest/gtest.h>
 #include <lz4.h>
 

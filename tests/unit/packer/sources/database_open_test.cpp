@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is no closed RTAB-Map database is refused with a reason; the file itself never changes.
+// Anything but a closed RTAB-Map database is refused with a reason; the file itself never changes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>

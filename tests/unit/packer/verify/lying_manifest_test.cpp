@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Manifests with a right digest that say what the packs do not hold.
+// Manifests with a correct digest whose claims the packs contradict.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -152,9 +152,9 @@ INSTANTIATE_TEST_SUITE_P(
             "fewer than its features alone take"}),
     [](const auto& test) { return test.param.name; });
 
-// What the manifest says and a pack or another part of the manifest can contradict. Left out: what
-// stands in the manifest only (lineage, labels, types, which portals there are, texts of the
-// provenance) and coordinates, which are held against signatures and borders with some play.
+// Every claim of the manifest that a pack or another part of the manifest can contradict. Left out:
+// what is in the manifest only (lineage, labels, types, which portals there are, texts of the
+// provenance) and coordinates, which are compared with signatures and borders with some tolerance.
 std::string claims(const fb::Manifest& manifest) {
   std::ostringstream out;
   out << manifest.frame()->str() << manifest.slot_bytes() << ' ' << manifest.payload_mask();

@@ -52,8 +52,8 @@ std::vector<std::string> names(const ZonePlan& plan) {
   return result;
 }
 
-// What must hold for every split: areas add up, parts are apart and connected by portals on their
-// borders, every signature is in one part, by the rule, and no part is too heavy.
+// What must hold for every split: areas add up, parts are disjoint and connected by portals on
+// their borders, every signature is in one part, by the rule, and no part is too heavy.
 void expect_sound(const Case& input, const SplitPlan& result, ByteCount limit) {
   ASSERT_EQ(result.zone_of.size(), input.places.size());
   double area_before = 0, area_after = 0;
