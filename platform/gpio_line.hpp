@@ -37,7 +37,7 @@ struct GpioLineInfo {
   std::string chip;  // "gpiochip0 (robot)"
   unsigned number = 0;
   std::string name;      // empty: none
-  std::string consumer;  // who holds it; empty: nobody
+  std::string consumer;  // the program that uses it; empty: none
   bool output = false;   // as set up now
 };
 

@@ -15,7 +15,7 @@
 // The rule, for the base position (x, y, z) of a signature in the map:
 //
 // 1. Only zones whose z range contains z count (z_min <= z < z_max; a zone without bounds contains
-//    every height). Nothing else tells floors above each other apart.
+//    every height). Nothing else separates floors above each other.
 //
 // 2. Inside a zone takes precedence over on the border of one (side_of: within 1e-9 m of an edge).
 //

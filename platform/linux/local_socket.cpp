@@ -39,8 +39,8 @@ bool remove_stale(const std::string& path) noexcept {
   struct stat status;
   if (::lstat(path.c_str(), &status) != 0) return errno == ENOENT;
   if (!S_ISSOCK(status.st_mode)) return false;
-  const Result<LocalSocket> somebody = LocalSocket::connect(path);
-  if (somebody.ok() || somebody.error().code != ErrorCode::kNotFound) return false;
+  const Result<LocalSocket> listener = LocalSocket::connect(path);
+  if (listener.ok() || listener.error().code != ErrorCode::kNotFound) return false;
   return ::unlink(path.c_str()) == 0;
 }
 

@@ -62,7 +62,7 @@ struct Chart {
 
 Svg draw_chart(const Chart& chart);
 
-// The value at the end of each series, as printed beside it.
+// The value at the end of each series, as printed next to it.
 std::string end_value(const Chart& chart, double value);
 
 }  // namespace zonepack::report

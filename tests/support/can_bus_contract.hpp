@@ -19,7 +19,8 @@ namespace zonepack {
 // A bus under test, opened for kIds, and another node on the same wire.
 class CanRig {
  public:
-  static constexpr std::array<CanId, 2> kIds{CanId{0x123, false}, CanId{0x18FF1234, true}};
+  static constexpr std::array<CanId, 2> kIds{CanId{.id = 0x123, .extended = false},
+                                             CanId{.id = 0x18FF1234, .extended = true}};
 
   virtual ~CanRig() = default;
   virtual CanBus& bus() = 0;

@@ -59,7 +59,7 @@ TEST(SharedMemory, CannotBeMappedWritableByAReader) {
   EXPECT_LT(write(file->get(), "x", 1), 0);
 }
 
-TEST(SharedMemory, CannotBeOpenedAnewToWriteByAnotherUser) {
+TEST(SharedMemory, CannotBeReopenedForWritingByAnotherUser) {
   if (getuid() != 0) GTEST_SKIP() << "changing the user takes root";
   const SharedMemory memory = make();
   const auto file = memory.reader_file();

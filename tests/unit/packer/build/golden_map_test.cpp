@@ -62,13 +62,13 @@ TEST_F(GoldenMap, IsWhole) {
   EXPECT_EQ(verdict.signatures, 8u);
 }
 
-TEST_F(GoldenMap, ManifestHoldsWhatStandsBesideIt) {
+TEST_F(GoldenMap, ManifestHoldsWhatItsJsonFileSays) {
   EXPECT_EQ(first_difference(test_support::to_json(*manifest_).dump(1) + "\n",
                              read_text(kGolden / "manifest.json")),
             "");
 }
 
-TEST_F(GoldenMap, PacksHoldWhatStandsBesideThem) {
+TEST_F(GoldenMap, PacksHoldWhatTheirJsonFilesSay) {
   for (const fb::Zone* zone : *manifest_->zones()) {
     const PackReader reader = pack_of(*zone);
     const auto pack = DecodedPack::decode(reader, kEveryPayload);

@@ -104,7 +104,7 @@ TEST_F(Rebuild, AfterAFeatureOfOneRoomChangedLeavesTheOtherPacksAsTheyWere) {
   expect_only_right_changed();
 }
 
-TEST_F(Rebuild, AfterARoomWasMappedAnewLeavesTheOtherPacksAsTheyWere) {
+TEST_F(Rebuild, AfterARoomWasMappedAgainLeavesTheOtherPacksAsTheyWere) {
   // Session 2 comes back with other ids, poses, and one signature more.
   fixture_.signatures.resize(12);
   for (std::int32_t i = 31; i <= 35; ++i) {

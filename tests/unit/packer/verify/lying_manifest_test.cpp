@@ -23,7 +23,7 @@ std::string listed(const Problems& problems) {
 
 struct Lie {
   const char* name;
-  std::function<void(SmallMap&)> tell;
+  std::function<void(SmallMap&)> falsify;
   const char* found;  // part of the message
 };
 
@@ -33,7 +33,7 @@ class LyingManifest : public testing::TestWithParam<Lie> {};
 
 TEST_P(LyingManifest, IsFound) {
   SmallMap map;
-  GetParam().tell(map);
+  GetParam().falsify(map);
   map.write_manifest();
   const Verdict verdict = verify_map(map.folder);
   EXPECT_THAT(listed(verdict.problems), testing::HasSubstr(GetParam().found));
@@ -210,7 +210,7 @@ TEST(LyingManifests, ThatAreMissingLeaveThePacksToBeCheckedByThemselves) {
   EXPECT_EQ(verdict.problems[1].place.file, map.packs[1].file);
 }
 
-TEST(LyingManifests, DoNotMakeFilesBesideTheMapAProblem) {
+TEST(LyingManifests, DoNotMakeOtherFilesInTheFolderAProblem) {
   SmallMap map;
   map.folder.files["c-0123456789abcdef.zpk"] = Bytes(10);
   map.folder.files["pack.zpk.part-77-0"] = Bytes(10);

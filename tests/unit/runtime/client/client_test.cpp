@@ -111,7 +111,7 @@ TEST_F(Connected, AsksForTheNearestSignatures) {
   EXPECT_EQ(near->front().distance_m, 0.25F);
 }
 
-TEST_F(Connected, TellsWhyZonedRefuses) {
+TEST_F(Connected, ReportsWhyZonedRefuses) {
   zoned->fault = wire::Fault::Denied;
   EXPECT_EQ(client.pose().error(), (Error{ErrorCode::kIo, EACCES}));
   EXPECT_EQ(client.last_words(), "because of the test");

@@ -38,7 +38,7 @@ PackReport two_zones() {
   return map;
 }
 
-TEST(PackReport, TellsTheSmallestBudgetAndItsPair) {
+TEST(PackReport, StatesTheSmallestBudgetAndItsPair) {
   const Report page = make_pack_report(two_zones());
   EXPECT_EQ(page.facts[0].value, "3.1 MiB");
   EXPECT_EQ(page.facts[0].note,

@@ -23,10 +23,13 @@ Report sample() {
   report.title = "Map <hospital>";
   report.headline = "24 zones & 185 signatures.";
   report.origin = "zonepack";
-  report.facts = {{"zones", "24", "", false}, {"budget violations", "3", "must be 0", true}};
-  report.figures.push_back({"Plan", "How to read it.", drawing});
-  report.tables.push_back(
-      {"Zones", "By name.", {{"Zone"}, {"Bytes", true}}, {{"L1", "12"}, {"H1"}}});
+  report.facts = {{.name = "zones", .value = "24", .note = "", .bad = false},
+                  {.name = "budget violations", .value = "3", .note = "must be 0", .bad = true}};
+  report.figures.push_back({.title = "Plan", .caption = "How to read it.", .drawing = drawing});
+  report.tables.push_back({.title = "Zones",
+                           .caption = "By name.",
+                           .columns = {{.name = "Zone"}, {.name = "Bytes", .number = true}},
+                           .rows = {{"L1", "12"}, {"H1"}}});
   return report;
 }
 
