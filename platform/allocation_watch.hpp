@@ -5,10 +5,11 @@
 
 namespace zonepack {
 
-// Counts what the calling thread allocates and frees on the heap while it lives. Only in programs
-// that are linked with allocation_hooks.cpp (zoned is); others count nothing. In builds with
-// ZONEPACK_ABORT_ON_ALLOCATION the first allocation stops the process.   Threads: one object a
-// thread.
+// Counts what the calling thread allocates and frees on the heap during the object's lifetime. Only
+// programs linked with allocation_hooks.cpp (zoned is) count; others report zero. In builds with
+// ZONEPACK_ABORT_ON_ALLOCATION the first allocation stops the process.
+//
+// Threads: one object per thread.
 class AllocationWatch {
  public:
   AllocationWatch() noexcept;
@@ -20,7 +21,7 @@ class AllocationWatch {
 };
 
 namespace allocation_watch {
-// For the hooks: notes one call of the heap by this thread.
+// For the hooks: records one heap call by this thread.
 void note() noexcept;
 }  // namespace allocation_watch
 

@@ -13,7 +13,7 @@ namespace zonepack {
 // What a program needs of the computer it runs on.
 struct BoardNeeds {
   int priority = 0;             // SCHED_FIFO
-  std::optional<unsigned> cpu;  // the processor that is to be the control thread's alone
+  std::optional<unsigned> cpu;  // the processor reserved for the control thread
   ByteCount locked_bytes = 0;
 };
 
@@ -22,13 +22,13 @@ struct BoardFact {
   std::string name;
   std::string found;
   bool good = true;
-  std::string mend;  // where it is not good: the exact line that mends it
+  std::string mend;  // when not good: the exact command or line that fixes it
 };
 
 // The kernel, PREEMPT_RT, frequency governor, idle states, real-time throttling, isolated
 // processors, interrupts, limits of locked memory and priority, memory compaction, page size, and
-// the memory limit of the cgroup. What the kernel does not tell is good, and says so.
-// `root`: where /proc and /sys are looked for ("" on a robot). Allocates; reads files.
+// the memory limit of the cgroup. A fact that the kernel does not report counts as good, and says
+// so. `root`: the folder that holds /proc and /sys ("" on a robot). Allocates; reads files.
 std::vector<BoardFact> inspect_board(const BoardNeeds& needs, const std::string& root = "");
 
 }  // namespace zonepack

@@ -11,7 +11,7 @@ namespace zonepack {
 
 // One frame of a CAN bus, classic or FD, as the kernel or a log hands it over.
 struct CanFrame {
-  std::int64_t stamp_ns = 0;  // at reception, on the clock of what it came from
+  std::int64_t stamp_ns = 0;  // at reception, on the clock of its source
   std::uint32_t id = 0;       // 11 or 29 bits; of an error frame the class bits; no flag bits
   bool extended = false;      // 29-bit id
   bool fd = false;
@@ -30,41 +30,43 @@ struct CanId {
 
 enum class CanLink : std::uint8_t {
   kUp,
-  kNoCarrier,  // up, but its controller takes no part: bus-off, or not started
+  kNoCarrier,  // up, but its controller does not take part: bus-off, or not started
   kDown,
   kAbsent,  // no interface of that name
 };
 
-// What a controller's error counters make of it.
+// The error state that follows from a controller's error counters.
 enum class CanBusState : std::uint8_t { kActive, kWarning, kPassive, kOff };
 
-// How a bus stands; the counts are since the start.
+// The state of a bus; counts are since the start.
 struct CanBusStatus {
   CanLink link = CanLink::kUp;
   CanBusState state = CanBusState::kActive;
-  std::uint64_t dropped = 0;    // frames lost in the queue before us
+  std::uint64_t dropped = 0;    // frames lost in the queue in front of this program
   std::uint64_t overflows = 0;  // times the controller itself lost frames
   std::uint64_t error_frames = 0;
   std::uint64_t bus_offs = 0;
   std::uint64_t restarts = 0;    // after a bus-off
-  std::uint64_t reconnects = 0;  // the interface vanished, or was another, and was opened again
+  std::uint64_t reconnects = 0;  // the interface vanished or was replaced, and was reopened
   friend bool operator==(const CanBusStatus&, const CanBusStatus&) = default;
 };
 
-// A bus that frames are read from. Real-time: receive() neither blocks, allocates nor throws.
+// A bus that frames are read from.
+//
+// Real-time: receive() neither blocks, allocates nor throws.
 // Threads: one reader.
 class CanBus {
  public:
   virtual ~CanBus() = default;
 
   // Takes up to into.size() frames that have arrived, in order of arrival; returns how many. The
-  // rest stays for the next call, so the caller's span bounds its work per cycle.
+  // rest waits for the next call, so the caller's span bounds the work per cycle.
   virtual std::size_t receive(std::span<CanFrame> into) noexcept = 0;
 
   // Frames lost before they could be read, since the start.
   virtual std::uint64_t dropped() const noexcept = 0;
 
-  // As far as the last receive() has seen.
+  // As of the last receive().
   virtual CanBusStatus status() const noexcept { return {.dropped = dropped()}; }
 };
 

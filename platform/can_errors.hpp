@@ -5,16 +5,16 @@
 
 #include "platform/can_bus.hpp"
 
-// What error frames tell, as linux/can/error.h numbers it; controllers of every maker are made to
-// speak so by their drivers, and candump writes it to logs.
+// What error frames mean, numbered as in linux/can/error.h. Drivers translate the reports of every
+// controller into these numbers, and candump writes them to logs.
 namespace zonepack {
 
 // Bits of an error frame's id.
-inline constexpr std::uint32_t kCanErrorController = 0x004;  // data[1] says more
+inline constexpr std::uint32_t kCanErrorController = 0x004;  // details in data[1]
 inline constexpr std::uint32_t kCanErrorBusOff = 0x040;
 inline constexpr std::uint32_t kCanErrorRestarted = 0x100;
 // The classes that change a CanBusStatus. Others (lost arbitration, missing acknowledgement, bus
-// errors) may come with every frame of a disturbed bus, and the states follow from them anyway.
+// errors) may come with every frame of a disturbed bus, and affect the states anyway.
 inline constexpr std::uint32_t kCanErrorsWatched =
     kCanErrorController | kCanErrorBusOff | kCanErrorRestarted;
 
@@ -24,7 +24,7 @@ inline constexpr std::uint8_t kCanControllerWarning = 0x0C;
 inline constexpr std::uint8_t kCanControllerPassive = 0x30;
 inline constexpr std::uint8_t kCanControllerActive = 0x40;
 
-// Counts an error frame and follows the state that it reports; link is left alone.
+// Counts an error frame and adopts the state that it reports; leaves `link` alone.
 void take_error_frame(const CanFrame& frame, CanBusStatus& status) noexcept;
 
 // An error frame of these classes; for simulation and tests.

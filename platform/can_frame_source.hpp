@@ -8,12 +8,12 @@
 
 namespace zonepack {
 
-// Frames one after the other: a log, a list, a generator.
+// A sequence of frames: a log, a list, a generator.
 class CanFrameSource {
  public:
   virtual ~CanFrameSource() = default;
   virtual std::optional<CanFrame> next() noexcept = 0;
-  // Frames known to be missing before the one that next() gave last.
+  // Frames known to be missing before the one that next() returned last.
   virtual std::uint64_t dropped() const noexcept { return 0; }
 };
 

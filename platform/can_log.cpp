@@ -76,7 +76,7 @@ void CanLogReader::note(std::uint64_t line, std::string_view what, std::string_v
   summary_.faults.push_back({line, std::move(message)});
 }
 
-// False at the end of the file. What is longer than the buffer is cut, which breaks the line.
+// False at the end of the file. A line longer than the buffer is cut, which makes it a broken line.
 bool CanLogReader::read_line(std::string_view& line) {
   std::size_t size = 0;
   int c = 0;
@@ -124,7 +124,7 @@ void CanLogReader::refill() {
   }
 }
 
-// candump -tz counts up from zero; -td jumps up and down, as far as frames do not come in step.
+// candump -tz counts up from zero; -td jumps up and down unless frames come at even intervals.
 bool CanLogReader::stamps_are_differences() const noexcept {
   std::size_t back = 0;
   for (std::size_t i = 1; i < count_; ++i) {

@@ -18,42 +18,43 @@
 
 namespace zonepack {
 
-// What was met in a log so far. Lines count from 1.
+// What reading a log has found so far. Lines count from 1.
 struct CanLogSummary {
   struct Fault {
     std::uint64_t line = 0;
     std::string what;  // the reason and the start of the line
   };
   std::uint64_t lines = 0;
-  std::uint64_t frames = 0;  // given out or about to be
+  std::uint64_t frames = 0;  // returned, or read ahead
   std::uint64_t broken_lines = 0;
-  std::uint64_t stray_stamps = 0;     // frames left out: stamp far in the future of both neighbours
-  std::uint64_t unsorted_stamps = 0;  // frames with a stamp before the latest one so far
-  std::uint64_t other_interfaces = 0;  // frames the interface filter left out
-  std::string interface;               // whose frames are given; empty: all
+  std::uint64_t stray_stamps = 0;      // frames skipped: stamp far later than both neighbours
+  std::uint64_t unsorted_stamps = 0;   // frames with a stamp before the latest one so far
+  std::uint64_t other_interfaces = 0;  // frames that the interface filter skipped
+  std::string interface;               // whose frames are returned; empty: all
   std::uint64_t error_frames = 0;
-  std::uint64_t dropped = 0;  // as DROPCOUNT lines tell
+  std::uint64_t dropped = 0;  // as DROPCOUNT lines report
   int read_error = 0;         // errno that ended the file early; 0: read to its end
   std::vector<Fault> faults;  // the first kMostFaults of broken lines and stray stamps
 };
 
-// Reads a candump recording (can_log_line.hpp tells which) from front to back in bounded memory.
+// Reads a candump recording (formats: can_log_line.hpp) from front to back in bounded memory.
 //
-// A broken line is counted, noted with its number and skipped; only a file without one valid frame
-// is an error. The order of the file is the order of arrival: frames whose stamp steps back are
-// counted and given out as they are (SimCanBus tells when they arrive), except a single frame
-// stamped over an hour after both neighbours, which is counted and left out.
+// A broken line is counted, recorded with its number and skipped; only a file without a single
+// valid frame is an error. The order of the file is the order of arrival: frames whose stamp steps
+// back are counted and returned as they are (SimCanBus defines when they arrive), except a single
+// frame stamped over an hour after both neighbours, which is counted and skipped.
 class CanLogReader final : public CanFrameSource {
  public:
   static constexpr std::size_t kMostFaults = 20;
 
-  // interface: "can0" gives only that bus's frames; empty gives all. A recording of one other bus
-  // and none of this one is taken as this one's: the same bus has other names on other machines.
+  // interface: "can0" selects that bus's frames; empty selects all. A recording that holds exactly
+  // one bus, under another name, counts as this bus: its name differs between machines.
   explicit CanLogReader(std::string path, std::string interface = {});
   ~CanLogReader() override;
 
   // Opens the file and reads ahead. Errors: kNotFound, kIo (errno); kBadStructure: no valid frame
-  // in the whole file; kBadValue: stamps are time differences (candump -td), useless for a pose.
+  // in the whole file; kBadValue: stamps are time differences (candump -td), which do not give a
+  // pose.
   Result<void> open();
 
   // The message for open()'s error: file, line, what was expected, what to do.
@@ -62,7 +63,7 @@ class CanLogReader final : public CanFrameSource {
   // The next frame; nullopt at the end of the file.
   std::optional<CanFrame> next() noexcept override;
 
-  // DROPCOUNT losses before the frames given out so far.
+  // DROPCOUNT losses before the frames returned so far.
   std::uint64_t dropped() const noexcept override { return dropped_before_; }
 
   const CanLogSummary& summary() const noexcept { return summary_; }
@@ -91,15 +92,15 @@ class CanLogReader final : public CanFrameSource {
   std::string interface_;
   std::unique_ptr<std::FILE, Closer> file_;
   std::array<char, kLongestLine> line_{};
-  std::array<Item, kAhead> ahead_{};  // a ring: frames read but not given out
+  std::array<Item, kAhead> ahead_{};  // a ring: frames read but not yet returned
   std::size_t first_ = 0;
   std::size_t count_ = 0;
   bool end_ = false;
   bool relative_ = false;
-  std::string other_;  // the first interface left out
+  std::string other_;  // the first interface skipped
   bool several_others_ = false;
   bool given_ = false;
-  std::int64_t latest_ns_ = 0;  // largest stamp given out
+  std::int64_t latest_ns_ = 0;  // largest stamp returned
   std::uint64_t dropped_before_ = 0;
   CanLogSummary summary_;
 };

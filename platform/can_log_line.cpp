@@ -28,7 +28,7 @@ int hex_digit(char c) noexcept {
   return -1;
 }
 
-// A rest of the line that is eaten from the front.
+// The rest of the line, consumed from the front.
 class Cursor {
  public:
   explicit Cursor(std::string_view text) noexcept : text_(text) {}
@@ -54,7 +54,7 @@ class Cursor {
     skip(n);
     return found;
   }
-  // Digits of the base from_chars knows; false when there is none or the value does not fit.
+  // Digits in the given base; false when there are none or the value does not fit.
   template <typename T>
   bool number(T& value, int base = 10) noexcept {
     const auto [end, error] =
@@ -135,7 +135,7 @@ bool parse_byte(Cursor& in, std::uint8_t& byte) noexcept {
   return true;
 }
 
-// What follows the first '#': "R", "R8", "#<flags><data>" or data, and a raw DLC "_9".
+// What follows the first '#': "R", "R8", "#<flags><data>" or data, with a raw DLC "_9".
 const char* parse_log_data(std::string_view text, CanFrame& frame) noexcept {
   Cursor in(text);
   if (in.take('R') || in.take('r')) {
@@ -284,7 +284,7 @@ CanLogLine parse_plain(std::string_view text) noexcept {
 CanLogLine parse_can_log_line(std::string_view line) noexcept {
   const bool indented = !line.empty() && line.front() == '\t';
   while (!line.empty() && (is_blank(line.back()) || line.back() == '\r')) line.remove_suffix(1);
-  // Colours: "\x1b[31m" before the line, "\x1b[0m" behind it.
+  // Colours: "\x1b[31m" before the line, "\x1b[0m" after it.
   while (line.starts_with("\x1b["))
     line.remove_prefix(std::min(line.find('m'), line.size() - 1) + 1);
   if (const std::size_t escape = line.find('\x1b'); escape != std::string_view::npos) {

@@ -16,13 +16,13 @@ struct CanLogLine {
     kFrame,
     kNothing,  // blank, a comment (# or ;), the indented text that candump -e adds
     kDrop,     // DROPCOUNT: the recorder lost frames
-    kBroken,   // none of these; fault says why
+    kBroken,   // none of these; `fault` says why
   };
   Kind kind = Kind::kNothing;
   CanFrame frame;
-  std::string_view interface;   // "can0"; points into the line
-  bool absolute_stamp = true;   // false: seconds since something, as candump -tz and -td print
-  std::uint64_t dropped = 0;    // kDrop: frames lost
+  std::string_view interface;  // "can0"; points into the line
+  bool absolute_stamp = true;  // false: seconds since an unknown time, as candump -tz and -td print
+  std::uint64_t dropped = 0;   // kDrop: frames lost
   const char* fault = nullptr;  // kBroken: a static text
 };
 
@@ -34,8 +34,9 @@ struct CanLogLine {
 // {9}); screen lines also with -x, -a, -e, -i (binary), -S (swapped bytes) and colours.
 CanLogLine parse_can_log_line(std::string_view line) noexcept;
 
-// The line that candump -l writes of the frame, without its end, into `line`, which must have room
-// for kCanLogLineRoom and the interface's name; returns what was written. Stamps to microseconds.
+// Writes the line that candump -l writes for the frame, without its line end, into `line`, which
+// must hold kCanLogLineRoom bytes plus the interface's name. Returns the text written. Stamps are
+// rounded down to microseconds.
 inline constexpr std::size_t kCanLogLineRoom = 192;
 std::string_view write_can_log_line(const CanFrame& frame, std::string_view interface,
                                     std::span<char> line) noexcept;

@@ -5,13 +5,14 @@
 
 namespace zonepack {
 
-// CLOCK_MONOTONIC and CLOCK_REALTIME in nanoseconds. Real-time: no system call where the kernel
-// offers the vDSO.
+// CLOCK_MONOTONIC and CLOCK_REALTIME in nanoseconds.
+//
+// Real-time: no system call where the kernel offers the vDSO.
 std::int64_t monotonic_ns() noexcept;
 std::int64_t realtime_ns() noexcept;
 
-// CLOCK_REALTIME minus CLOCK_MONOTONIC, from readings that nothing came between as far as three
-// tries could tell; the error is below half of what one reading took.
+// CLOCK_REALTIME minus CLOCK_MONOTONIC, from the least interrupted of up to three readings; the
+// error is below half the time that this reading took.
 std::int64_t clock_offset_ns() noexcept;
 
 // CPU time of the calling thread.

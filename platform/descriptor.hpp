@@ -23,14 +23,16 @@ class Descriptor {
   int release() noexcept { return std::exchange(fd_, -1); }
   void close() noexcept;
 
-  // Another one for the same open file, locks included. kIo with errno.
+  // Another descriptor of the same open file, locks included. kIo with errno.
   Result<Descriptor> share() const noexcept;
 
  private:
   int fd_ = -1;
 };
 
-// All of it, in as many pieces as it takes. kIo with errno. Not for the control thread.
+// Writes all of the bytes, in as many pieces as it takes. kIo with errno.
+//
+// Real-time: may block; not for the control thread.
 Result<void> write_all(int fd, std::span<const std::byte> bytes) noexcept;
 
 }  // namespace zonepack

@@ -8,21 +8,24 @@
 
 namespace zonepack {
 
-// Takes the bouncing out of a line's changes: a level counts once it has lasted the debounce time,
-// from the edge that began it. Decided by the edges' own stamps, so it is the same however late
-// they are read. Begins inactive. Real-time: O(1), no memory.
+// Debounces a line: a level counts once it has lasted the debounce time, from the edge that began
+// it. Only the stamps of the edges decide, so the result does not depend on how late they are read.
+// Begins inactive.
+//
+// Real-time: O(1), no allocation.
 class EdgeFilter {
  public:
   explicit EdgeFilter(std::int64_t debounce_ns) noexcept : debounce_ns_(debounce_ns) {}
 
-  // The line changed, or was found, to be so. Stamps that fall count as the one before. Returns the
-  // edge that is settled thereby: the level that ends here had lasted, or needs not to last.
+  // Takes a raw change of the line, or its first level. A stamp earlier than the one before counts
+  // as that one. Returns the edge that this change settles: the level that ends here had lasted
+  // long enough, or the debounce time is 0.
   std::optional<GpioEdge> change(const GpioEdge& raw) noexcept;
 
-  // The edge that is settled by now, if there is one.
+  // The edge that has settled by now, if any.
   std::optional<GpioEdge> settle(std::int64_t now_ns) noexcept;
 
-  bool level() const noexcept { return level_; }  // the newest told, settled or not
+  bool level() const noexcept { return level_; }  // the newest, settled or not
 
  private:
   std::int64_t debounce_ns_;

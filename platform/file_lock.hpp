@@ -8,16 +8,16 @@
 
 namespace zonepack {
 
-// A lock on a file that belongs to the open file: whoever was sent a share of it holds the lock
-// too, and it ends with the last of them, however they end. Who waits learns of holders that no
-// longer answer, such as readers of a process that crashed.
+// A lock that belongs to an open file description: every process that was sent a share of the
+// descriptor holds it too, and it ends with the last of them, however they end. A process that
+// cannot get it knows that some holder is left, such as a reader of a process that crashed.
 class FileLock {
  public:
-  // Makes the file if there is none (its content does not matter). Tries again every 20 ms for as
-  // long as `wait`; kBusy when others hold it to the end, kIo with errno.
+  // Creates the file if it does not exist (its content does not matter). Retries every 20 ms for up
+  // to `wait`; kBusy when others still hold the lock then, kIo with errno.
   static Result<FileLock> acquire(const std::string& path, std::chrono::milliseconds wait);
 
-  // A share handed back: kBusy when it does not hold the lock and another does.
+  // Takes back a share: kBusy when it does not hold the lock and another descriptor does.
   static Result<FileLock> adopt(Descriptor file);
 
   const Descriptor& file() const noexcept { return file_; }

@@ -21,8 +21,8 @@ std::string explain_gpio(GpioPort& port, const GpioLineName& name, const Error& 
              ": several have this label; name one by its device file, /dev/gpiochip0";
     case ErrorCode::kBusy: {
       const auto info = port.look(name);
-      const std::string who = info && !info->consumer.empty() ? info->consumer : "somebody";
-      return line + ": held by " + who + "; end that, or choose another line";
+      const std::string who = info && !info->consumer.empty() ? info->consumer : "another program";
+      return line + ": held by " + who + "; end it, or choose another line";
     }
     case ErrorCode::kMismatch:
       return line +

@@ -11,8 +11,7 @@
 
 namespace zonepack {
 
-// One pin of a GPIO controller. "Active" is what the program means; which voltage that is,
-// active_low says.
+// One pin of a GPIO controller. "Active" is the logical state; active_low maps it to a voltage.
 struct GpioLineName {
   std::string chip;  // its label (robot), name (gpiochip0) or device file (/dev/gpiochip0)
   std::string line;  // its number on the chip (5), or its name
@@ -23,51 +22,56 @@ enum class GpioBias : std::uint8_t { kAsIs, kNone, kPullUp, kPullDown };
 struct GpioOutputSettings {
   GpioLineName name;
   bool active_low = false;
-  bool active = false;  // from the moment it is opened
+  bool active = false;  // state from the moment it is opened
 };
 
 struct GpioInputSettings {
   GpioLineName name;
   bool active_low = false;
   GpioBias bias = GpioBias::kAsIs;
-  std::int64_t debounce_ns = 0;  // a level counts once it has lasted so long
+  std::int64_t debounce_ns = 0;  // a level counts once it has lasted this long
 };
 
-// What a line is found to be, without touching it.
+// How a line is set up, read without changing it.
 struct GpioLineInfo {
   std::string chip;  // "gpiochip0 (robot)"
   unsigned number = 0;
-  std::string name;      // empty: it has none
-  std::string consumer;  // who holds it; empty: nobody
-  bool output = false;   // as it is set up now
+  std::string name;      // empty: none
+  std::string consumer;  // the program that uses it; empty: none
+  bool output = false;   // as set up now
 };
 
 struct GpioEdge {
-  std::int64_t stamp_ns = 0;  // CLOCK_MONOTONIC, when the line changed to what it stays at
+  std::int64_t stamp_ns = 0;  // CLOCK_MONOTONIC, when the line changed to its settled level
   bool active = false;
 };
 
-// A line that this program drives. Threads: one. set() may take as long as the bus behind which the
-// chip stands. Destroying it gives the line back as it is: what it should be then is set before.
+// A line that this program drives. Destroying the object releases the line in its current state, so
+// set the final state first.
+//
+// Real-time: set() may take as long as the bus that the chip is on.
+// Threads: one.
 class GpioOutput {
  public:
   virtual ~GpioOutput() = default;
   virtual Result<void> set(bool active) noexcept = 0;  // kIo with errno
 };
 
-// A line that this program watches. Threads: one.
+// A line that this program watches.
+//
+// Threads: one.
 class GpioInput {
  public:
   virtual ~GpioInput() = default;
 
-  // Takes edges that are settled by now, oldest first, active and inactive in turn; an input that
-  // is active when it is opened begins with such an edge. Never waits for one. Work is bounded by
-  // into.size(). kIo with errno: the chip is gone.
+  // Takes the edges that have settled by now, oldest first, alternating between active and
+  // inactive; an input that is active when opened begins with an active edge. Never waits. Work is
+  // bounded by into.size(). kIo with errno: the chip is gone.
   virtual Result<std::size_t> take(std::span<GpioEdge> into) noexcept = 0;
 };
 
-// Finds and opens lines. Errors: kNotFound: detail kNoChip or kNoLine; kExists: several chips bear
-// that label; kBusy: held already; kMismatch: set up as an output where an input is expected;
+// Finds and opens lines. Errors: kNotFound: detail kNoChip or kNoLine; kExists: several chips have
+// that label; kBusy: already in use; kMismatch: set up as an output where an input is expected;
 // kIo: errno.
 class GpioPort {
  public:
@@ -79,10 +83,12 @@ class GpioPort {
   virtual Result<std::unique_ptr<GpioInput>> open(const GpioInputSettings& settings) = 0;
 };
 
-// The kernel's chips. Any thread.
+// The kernel's chips.
+//
+// Threads: any.
 GpioPort& kernel_gpio();
 
-// The message for an error of open(): what is wrong, and what mends it.
+// The message for an error of open(): what is wrong and how to fix it.
 std::string explain_gpio(GpioPort& port, const GpioLineName& name, const Error& error);
 
 }  // namespace zonepack

@@ -5,15 +5,16 @@
 
 namespace zonepack {
 
-// Copies bytes of a mapped file into private memory. False when some of them are not there (the
-// file was cut short, or its storage fails), which a plain copy would pay for with SIGBUS; what
-// then stands at `to` is unspecified.
+// Copies bytes of a mapped file into private memory. Returns false when some of them cannot be read
+// (the file was truncated, or its storage fails), where a plain copy would raise SIGBUS; the
+// content of `to` is then unspecified.
 //
-// The first call installs a handler of SIGBUS for the process. Faults outside of a running copy go
-// to the handler that was there before, or end the process as they would have. A program that
-// installs its own handler later must hand on what it does not know.
+// The first call installs a SIGBUS handler for the process. Faults outside a running copy go to the
+// previous handler, or end the process as they would have. A program that installs its own handler
+// later must pass on the faults that it does not recognise.
 //
-// Threads: any, at the same time; jumps back through thread-local state. No allocation.
+// Real-time: no allocation.
+// Threads: any number at the same time; each jumps back through thread-local state.
 bool guarded_copy(std::byte* to, const std::byte* from, std::size_t size) noexcept;
 
 }  // namespace zonepack

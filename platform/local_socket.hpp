@@ -11,11 +11,12 @@
 #include "platform/descriptor.hpp"
 
 // Sockets between programs of one machine that carry whole messages and file descriptors
-// (SOCK_SEQPACKET). Errors: kIo with errno; the others are told at each call. Threads: one at a
-// time per object.
+// (SOCK_SEQPACKET). Errors: kIo with errno; others are listed at each call.
+//
+// Threads: one at a time per object.
 namespace zonepack {
 
-// Who is at the other end, as the kernel knew it when the connection was made.
+// The process at the other end, as the kernel knew it when the connection was made.
 struct PeerCredentials {
   std::int32_t pid = 0;
   std::uint32_t uid = 0;
@@ -26,32 +27,32 @@ class LocalSocket {
  public:
   static constexpr std::size_t kMostDescriptors = 4;
 
-  // What one receive() gave; bytes 0: the peer closed.
+  // The result of one receive(); bytes 0: the peer closed.
   struct Received {
     std::size_t bytes = 0;
-    bool cut = false;  // the message was longer than the buffer, its end is lost
+    bool cut = false;  // the message was longer than the buffer; its end is lost
     std::array<Descriptor, kMostDescriptors> descriptors;
     std::size_t descriptor_count = 0;
   };
 
-  // kNotFound: no such socket, or nobody listens on it. kBusy: its queue is full.
+  // kNotFound: no such socket, or no process listens on it. kBusy: its queue is full.
   static Result<LocalSocket> connect(const std::string& path);
 
   LocalSocket() = default;
   explicit LocalSocket(Descriptor fd) noexcept : fd_(std::move(fd)) {}
 
-  // One message, whole or not at all, never waiting. kBusy: no room now; kCancelled: the peer has
-  // closed.
+  // Sends one message, whole or not at all, without waiting. kBusy: no room now; kCancelled: the
+  // peer has closed.
   Result<void> send(std::span<const std::byte> message,
                     std::span<const int> descriptors = {}) const noexcept;
 
-  // The next message, never waiting. kBusy: there is none.
+  // Takes the next message without waiting. kBusy: there is none.
   Result<Received> receive(std::span<std::byte> buffer) const noexcept;
 
-  // At most this many bytes wait in the kernel for the peer to read, beside one message.
+  // Limits how many bytes wait in the kernel for the peer to read, besides one message.
   Result<void> limit_output(std::size_t bytes) const noexcept;
 
-  // Waits until something can be received or sent; false when the time is over.
+  // Waits until something can be received or sent; false on timeout.
   bool wait(bool to_send, int timeout_ms) const noexcept;
 
   PeerCredentials peer() const noexcept;
@@ -63,14 +64,14 @@ class LocalSocket {
   Descriptor fd_;
 };
 
-// A name in the file system that others connect to. Its mode decides who may. Removed by the
-// destructor.
+// A name in the file system that other programs connect to; its mode decides who may. The
+// destructor removes it.
 class LocalListener {
  public:
   static constexpr std::size_t kMostPath = 107;
 
-  // kExists: somebody listens there, or it is something else than a socket; a socket that nobody
-  // listens on is replaced. kTooLarge: the path is over kMostPath bytes.
+  // kExists: another process listens there, or it is not a socket; a socket without a listener is
+  // replaced. kTooLarge: the path is longer than kMostPath bytes.
   static Result<LocalListener> listen(const std::string& path, unsigned mode);
 
   LocalListener(LocalListener&& other) noexcept
@@ -78,7 +79,7 @@ class LocalListener {
   LocalListener& operator=(LocalListener&& other) noexcept;
   ~LocalListener();
 
-  // kBusy: nobody waits.
+  // kBusy: no connection is waiting.
   Result<LocalSocket> accept() const noexcept;
 
   int fd() const noexcept { return fd_.get(); }

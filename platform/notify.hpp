@@ -10,14 +10,16 @@
 
 namespace zonepack {
 
-// What a service tells the manager that started it, by the datagrams of sd_notify(3), and the open
-// files that the manager keeps for it while it is restarted (DescriptorStoreMax= in its unit).
-// Without a manager every call succeeds and does nothing. Errors: kIo with errno.
-// Threads: any; each call sends one datagram and never waits.
+// Sends a service's notifications to the manager that started it, as the datagrams of sd_notify(3),
+// and the open files that the manager keeps for it across a restart (FileDescriptorStoreMax= in its
+// unit). Without a manager every call succeeds and does nothing. Errors: kIo with errno.
+//
+// Real-time: each call sends one datagram and never waits.
+// Threads: any.
 class Notifier {
  public:
   Notifier() = default;  // no manager
-  // As NOTIFY_SOCKET and WATCHDOG_USEC say.
+  // Reads NOTIFY_SOCKET and WATCHDOG_USEC.
   static Result<Notifier> from_environment();
 
   bool has_manager() const noexcept { return socket_.is_open(); }
@@ -29,10 +31,10 @@ class Notifier {
   // One line, shown by `systemctl status`.
   Result<void> status(std::string_view line) const;
 
-  // alive() is to be called more often than this; zero: nobody watches.
+  // alive() must be called more often than this; zero: the manager does not watch.
   std::chrono::microseconds watchdog() const noexcept { return watchdog_; }
 
-  // The manager keeps a share of the file, and hands it back under `name` at the next start.
+  // Asks the manager to keep a share of the file and pass it back as `name` at the next start.
   Result<void> keep(std::string_view name, const Descriptor& file) const;
   Result<void> forget(std::string_view name) const;
 
@@ -40,18 +42,20 @@ class Notifier {
   Result<void> send(std::string_view text, int file = -1) const;
 
   Descriptor socket_;
-  std::string address_;  // first byte 0: an abstract one
+  std::string address_;  // first byte 0: an abstract address
   std::chrono::microseconds watchdog_{0};
 };
 
-// An open file that the manager handed over at start.
+// An open file that the manager passed at start.
 struct HandedFile {
   std::string name;
   Descriptor file;
 };
 
-// All of them, as LISTEN_PID, LISTEN_FDS and LISTEN_FDNAMES say; call once, before other threads
-// run. Takes the variables out of the environment, so that children do not take them for theirs.
+// Takes all of them, as LISTEN_PID, LISTEN_FDS and LISTEN_FDNAMES say, and removes these variables
+// from the environment, so that child processes do not mistake them for their own.
+//
+// Threads: call once, before other threads run.
 std::vector<HandedFile> take_handed_files();
 
 }  // namespace zonepack

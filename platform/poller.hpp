@@ -10,7 +10,9 @@
 
 namespace zonepack {
 
-// Waits for many descriptors at once. Errors: kIo with errno. Threads: one; wake() by any.
+// Waits for many descriptors at once. Errors: kIo with errno.
+//
+// Threads: one; wake() by any.
 class Poller {
  public:
   enum Interest : std::uint8_t { kNothing = 0, kReadable = 1, kWritable = 2 };
@@ -18,20 +20,20 @@ class Poller {
     std::uint32_t token = 0;
     bool readable = false;
     bool writable = false;
-    bool closed = false;  // by the peer; what it sent before can still be read
+    bool closed = false;  // by the peer; earlier data can still be read
   };
 
   static Result<Poller> create();
 
-  // `token` comes back in wait(). A closed descriptor leaves by itself.
+  // wait() returns `token`. A closed descriptor removes itself.
   Result<void> add(int fd, std::uint32_t token, Interest interest) noexcept;
   Result<void> change(int fd, std::uint32_t token, Interest interest) noexcept;
 
-  // Returns the descriptors that are ready, at most out.size(); none after the timeout, after
-  // wake() or when a signal came.
+  // Returns the descriptors that are ready, at most out.size(); none on timeout, after wake() or
+  // when a signal arrives.
   std::span<const Ready> wait(std::span<Ready> out, int timeout_ms) noexcept;
 
-  // Makes the wait() under way, or the next, return.
+  // Makes the current wait(), or the next one, return.
   void wake() const noexcept;
 
  private:

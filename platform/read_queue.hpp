@@ -13,13 +13,14 @@
 
 namespace zonepack {
 
-// Reads ahead of one file at a time, past the page cache (O_DIRECT) and several requests at once
-// (the kernel's asynchronous reads), into a ring of memory of its own: the disk fills it while the
-// processor does something else. What could not be read so is simply not there, whatever the
-// reason; who needs it reads it another way and learns why.
+// Reads ahead in one file at a time, bypassing the page cache (O_DIRECT) and with several requests
+// at once (the kernel's asynchronous reads), into a ring of its own: the disk fills it while the
+// processor does other work. Bytes that could not be read are just not there, whatever the reason;
+// the caller reads them another way and gets the error there.
 //
 // Memory: kBytes, present from the start, in one huge page where the kernel has one, since a disk
-// takes a request for one stretch of memory faster than for many pages. Threads: one.
+// serves a request for one stretch of memory faster than one for many pages.
+// Threads: one.
 class ReadQueue {
  public:
   static constexpr std::size_t kPieceBytes = 256 * 1024;
@@ -30,22 +31,23 @@ class ReadQueue {
   static std::unique_ptr<ReadQueue> make();
   ~ReadQueue();
 
-  // Takes a file opened with O_DIRECT. One that was begun must have ended.
+  // Takes a file opened with O_DIRECT. A previous begin() must have been ended.
   void begin(Descriptor file) noexcept;
   bool busy() const noexcept { return file_.is_open(); }
-  // Waits for what is under way, which cannot be called back, and closes the file.
+  // Waits for the reads under way, which cannot be cancelled, and closes the file.
   void end() noexcept;
 
-  // Begins to read the pieces of the file that hold these bytes and are not here yet. False when
-  // some found no room beside what was not passed().
+  // Starts reading the pieces of the file that hold these bytes and are not here yet. False when
+  // the ring has no room for some of them next to the pieces that have not been passed.
   bool ask(std::uint64_t offset, std::uint64_t size) noexcept;
 
-  // These bytes if they were asked for and could be read, after waiting for them: in the ring,
-  // until passed(), or where they wrap around its end copied to `buffer`, of their size or more.
+  // Waits for these bytes and returns them, if they were asked for and could be read. They stand in
+  // the ring until passed or, where they wrap around its end, in `buffer`, which must hold `size`
+  // bytes.
   std::optional<std::span<const std::byte>> find(std::uint64_t offset, std::size_t size,
                                                  std::span<std::byte> buffer) noexcept;
 
-  // Nobody wants bytes before this offset any more.
+  // Gives up all bytes before this offset.
   void pass(std::uint64_t offset) noexcept { oldest_ = offset / kPieceBytes; }
 
  private:
@@ -53,7 +55,7 @@ class ReadQueue {
     enum class State : std::uint8_t { kFree, kUnderWay, kThere };
     State state = State::kFree;
     std::uint64_t number = 0;  // in the file
-    std::int64_t bytes = 0;    // that came, or an error below 0
+    std::int64_t bytes = 0;    // read, or a negative error
   };
 
   ReadQueue(unsigned long context, std::byte* ring) noexcept : context_(context), ring_(ring) {}
@@ -63,7 +65,7 @@ class ReadQueue {
   unsigned long context_;  // aio_context_t
   std::byte* ring_;
   Descriptor file_;
-  std::uint64_t oldest_ = 0;  // the first piece that somebody may still want
+  std::uint64_t oldest_ = 0;  // the first piece that may still be wanted
   std::array<Piece, kPieces> pieces_;
 };
 

@@ -17,14 +17,15 @@ struct ThreadSettings {
   std::size_t stack_bytes = 256 * 1024;  // present before `body` runs
 };
 
-// A thread with a stack of its own size, all of it present from the start. Ownership: joins when
-// destroyed, so ask the body to end first.
+// A thread with a stack of a chosen size, all of it present from the start.
+//
+// Ownership: the destructor joins, so ask the body to end first.
 class Thread {
  public:
   Thread() = default;
-  // Returns once the thread runs with its settings; on error no thread is left.
-  // allow_ordinary: without the privilege for fifo_priority, goes on as an ordinary thread and says
-  // so in is_realtime().
+  // Returns once the thread runs with its settings; after an error there is no thread.
+  // allow_ordinary: without the privilege for fifo_priority, the thread runs as an ordinary one and
+  // is_realtime() returns false.
   static Result<Thread> start(const ThreadSettings& settings, bool allow_ordinary,
                               std::function<void()> body);
   Thread(Thread&& other) noexcept;
@@ -43,15 +44,16 @@ class Thread {
 // Whether the calling thread runs under SCHED_FIFO.
 bool thread_is_realtime() noexcept;
 
-// Locks every page that the process has now, and no later one, into memory.
+// Locks every page that the process has now, but no later one, into memory.
 Result<void> lock_memory_now() noexcept;
 void unlock_memory() noexcept;
 
-// One heap for all threads, never given back or moved, so that locked pages stay where they are;
-// its first bytes are there at once, which costs less than a fault for each page.
+// Makes all threads use one heap that is never returned or moved, so that locked pages stay where
+// they are. The first `present_bytes` are made present at once, which costs less than a fault for
+// each page.
 void use_one_heap(std::size_t present_bytes) noexcept;
 
-// What the kernel counted for the calling thread.
+// Kernel counters of the calling thread.
 struct ThreadUsage {
   std::uint64_t minor_faults = 0;
   std::uint64_t major_faults = 0;
@@ -60,7 +62,7 @@ struct ThreadUsage {
 };
 ThreadUsage thread_usage() noexcept;
 
-// The most memory the process has had resident (VmHWM); 0 when it cannot be told.
+// The peak resident memory of the process (VmHWM); 0 when unknown.
 std::uint64_t process_peak_bytes() noexcept;
 
 }  // namespace zonepack

@@ -9,9 +9,8 @@
 namespace zonepack {
 
 // Runs a program found on PATH, without a shell, and waits for it. `arguments[0]` is its name.
-// It reads and writes the given descriptors as standard input and output; its standard error is
-// ours. Returns the exit status, 128 + number when a signal ended it. kNotFound: no such program;
-// kIo: errno.
+// The descriptors become its standard input and output; it shares our standard error. Returns the
+// exit status, or 128 + number when a signal ended it. kNotFound: no such program; kIo: errno.
 Result<int> run_program(const std::vector<std::string>& arguments, int stdin_fd, int stdout_fd);
 
 }  // namespace zonepack

@@ -9,10 +9,10 @@
 
 namespace zonepack {
 
-// The newest value of one writer, for any number of readers that never hold it up.
+// The newest value of one writer, for any number of readers that never delay it.
 //
-// Real-time: store() copies the value; load() tries again while it is being written.   Threads:
-// store() by one, load() by any.
+// Real-time: store() copies the value; load() retries while a store() is running.
+// Threads: store() by one, load() by any.
 template <typename T>
 class Seqlock {
   static_assert(std::is_trivially_copyable_v<T>);

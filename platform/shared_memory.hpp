@@ -9,39 +9,39 @@
 
 namespace zonepack {
 
-// One block of memory that its writer hands to readers as an open file. Its size is sealed: nobody
-// can make a page vanish under another. It lives as long as somebody has it open or mapped, and is
-// charged to whoever touched a page first.
+// One block of memory that its writer passes to readers as an open file. Its size is sealed: no
+// process can make a page vanish under another. It lives as long as any process has it open or
+// mapped, and each page is charged to the process that touched it first.
 //
 // Readers get a file that is open for reading only, and the memory's mode is 0400: mapping it
-// writable, or opening it anew to write, fails for every process of another user that is not root.
-// (F_SEAL_FUTURE_WRITE would say so once and for all, but would also keep a writer that was
-// restarted from taking its memory over.)
+// writable, or reopening it for writing, fails for every process of another user that is not root.
+// (F_SEAL_FUTURE_WRITE would rule this out altogether, but would also keep a restarted writer from
+// taking over its memory.)
 //
 // Errors: kIo with errno; kMismatch when a file is not such memory, or of another size.
 class SharedMemory {
  public:
-  // New, zeroed, every page present. `name` is what /proc/PID/maps shows.
+  // New memory, zeroed, every page present. /proc/PID/maps shows `name`.
   static Result<SharedMemory> create(const char* name, ByteCount bytes);
 
-  // For a writer that was restarted: memory that create() made earlier, its content untouched.
+  // For a restarted writer: memory that an earlier create() made, its content untouched.
   static Result<SharedMemory> adopt(Descriptor file, ByteCount bytes);
 
-  // For a reader: what reader_file() gave.
+  // For a reader: a file from reader_file().
   static Result<SharedMemory> map_read_only(Descriptor file);
 
   SharedMemory(SharedMemory&& other) noexcept;
   SharedMemory& operator=(SharedMemory&& other) noexcept;
   ~SharedMemory();
 
-  // The writer's.
+  // For the writer.
   std::span<std::byte> bytes() noexcept;
-  // Anyone's.
+  // For the writer and readers.
   std::span<const std::byte> read_only() const noexcept { return {begin_, size_}; }
 
   const Descriptor& file() const noexcept { return file_; }
 
-  // The memory, open for reading only, to be sent to a reader.
+  // The memory opened for reading only, to send to a reader.
   Result<Descriptor> reader_file() const;
 
  private:

@@ -7,11 +7,13 @@ namespace zonepack {
 
 enum class Signal : std::uint8_t { kNone, kStop, kReload };
 
-// Keeps SIGTERM and SIGINT (stop) and SIGHUP (reload) from interrupting anybody: they wait to be
-// asked for. SIGPIPE is ignored. Call before any thread is started.
+// Blocks SIGTERM and SIGINT (stop) and SIGHUP (reload) until next_signal() asks for them, and
+// ignores SIGPIPE.
+//
+// Threads: call before any other thread starts.
 void hold_signals() noexcept;
 
-// The next signal that came, waiting for one until monotonic_ns() reaches the time.
+// The next signal, waiting for one until monotonic_ns() reaches the time.
 Signal next_signal(std::int64_t until_monotonic_ns) noexcept;
 
 }  // namespace zonepack

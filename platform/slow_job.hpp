@@ -10,8 +10,10 @@
 
 namespace zonepack {
 
-// One piece of work at a time that may take long, in a thread of its own, so that the server need
-// not wait for a disk. Threads: start() and poll() by one. The destructor waits for the work.
+// Runs one piece of work at a time that may take long, on a thread of its own, so that the server
+// need not wait for a disk. The destructor waits for the work.
+//
+// Threads: start() and poll() by one.
 class SlowJob {
  public:
   using Work = std::function<Result<std::uint64_t>()>;
@@ -19,7 +21,7 @@ class SlowJob {
   // name: of the thread, at most 15 characters; outlives this object.
   explicit SlowJob(const char* name) : name_(name) {}
 
-  // kBusy while another runs; kIo when there is no thread to be had.
+  // kBusy while another job runs; kIo when no thread can be started.
   Result<void> start(Work work);
 
   // The result, once.

@@ -14,35 +14,36 @@ namespace zonepack {
 struct SocketCanSettings {
   std::string interface = {};
   // What the kernel lets through: data frames of these ids, at most 512. Empty: every frame.
-  // Error frames that tell of a controller's state always come.
+  // Error frames that report the controller's state always come.
   std::vector<CanId> ids = {};
-  // Asked of the kernel, which doubles it: a second of a full bus, shortest frames at 1 Mbit/s
-  // (47 bits, 21,277 frames) by what each takes there, 768 bytes or a little more.
+  // Requested from the kernel, which doubles it: one second of a full bus of shortest frames at
+  // 1 Mbit/s (47 bits, 21,277 frames), each of which takes 768 bytes or a little more there.
   std::uint32_t receive_buffer_bytes = 10 << 20;
-  bool wait_for_interface = false;  // one that is absent or down is not refused
+  bool wait_for_interface = false;  // accept an interface that is absent or down
 };
 
 // A CAN interface of the kernel, classic or FD; never sends.
 //
-// Frames are stamped on CLOCK_MONOTONIC at arrival, by the controller where it does, else by the
-// kernel. An interface that goes down gives nothing until it is up again; one that is removed or
-// renamed is given up, and whatever bears the name later is opened instead: status() tells. A
-// thread of its own, ordinary and asleep but for a look every tenth of a second, opens and closes
-// sockets, since both may wait in the kernel; it hands them to the reader through atomics.
-// Real-time: receive() makes at most into.size() / 64 + 2 calls of recvmmsg, each without waiting,
-// into buffers taken at the start.
+// Frames are stamped on CLOCK_MONOTONIC at arrival, by the controller where it can, else by the
+// kernel. An interface that goes down delivers nothing until it is up again. One that is removed or
+// renamed is given up, and the next interface with the name is opened instead; status() reports it.
+// An ordinary thread, asleep except for a check every tenth of a second, opens and closes sockets,
+// since both may wait in the kernel; it passes them to the reader through atomics.
+//
+// Real-time: receive() makes at most into.size() / 64 + 2 calls of recvmmsg, none of which waits,
+// into buffers allocated at the start.
 class SocketCanBus : public CanBus {
  public:
   // Errors: kNotFound: no such interface; kBadValue: it is not a CAN interface; kIo with errno:
   // ENETDOWN: it is down; EAFNOSUPPORT: the kernel has no CAN.
   static Result<std::unique_ptr<SocketCanBus>> open(const SocketCanSettings& settings);
 
-  // Bytes that the kernel granted, as it counts, which is twice what was asked for; 0 while there
-  // is no interface.
+  // Bytes that the kernel granted, by its own count: twice the request. 0 while there is no
+  // interface.
   virtual std::uint32_t granted_buffer_bytes() const noexcept = 0;
 };
 
-// The message for an error of open(): what is wrong and the command that mends it.
+// The message for an error of open(): what is wrong and the command that fixes it.
 std::string explain_socketcan(const std::string& interface, const Error& error);
 
 }  // namespace zonepack

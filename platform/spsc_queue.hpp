@@ -12,9 +12,9 @@ namespace zonepack {
 
 // A queue of fixed size between one thread that pushes and one that pops.
 //
-// Real-time: all memory is taken, and touched, in the constructor; push and pop copy one item and
-// never wait.   Threads: push() and free_space() by one, pop() and peek() by another, size() by
-// any.
+// Real-time: the constructor allocates and touches all memory; push and pop copy one item and never
+// wait.
+// Threads: push() and free_space() by one, pop() and peek() by another, size() by any.
 template <typename T>
 class SpscQueue {
   static_assert(std::is_trivially_copyable_v<T>);

@@ -14,12 +14,12 @@
 
 namespace zonepack {
 
-// The way of a file's bytes into private memory.
+// How a file's bytes get into private memory.
 enum class ReadMode : std::uint8_t {
-  kDirect,    // what read_ahead() asks for past the page cache, by a ReadQueue; else as kBuffered
-  kMapped,    // from mapped windows, whose pages are dropped from the cache behind the reader
-  kBuffered,  // pread, and dropped from the cache behind the reader
-  kCached,    // pread, and left in the cache: tools, which read a file again and again
+  kDirect,    // read_ahead() bypasses the page cache by a ReadQueue; the rest as kBuffered
+  kMapped,    // from mapped windows, whose pages are dropped from the cache after reading
+  kBuffered,  // pread, and dropped from the cache after reading
+  kCached,    // pread, and left in the cache: for tools that read a file repeatedly
 };
 
 // The robot's, by measurement: `storage_bench MAP` (tests/bench) loading 22 MB in 24 packs, cold,
@@ -29,24 +29,23 @@ enum class ReadMode : std::uint8_t {
 //   buffered    900   0.6         1.3   2 to 3                        1.8 MiB, 0
 //   mapped      330   2.8         3     7                             1.8 MiB, 0
 //   (cached)   1000   0.5         1.2   2                             all, all
-// All read ahead while we decode; mapped ones unmap their windows on every core.
+// All read ahead while the caller decodes; unmapping the mapped windows interrupts every core.
 inline constexpr ReadMode kDefaultReadMode = ReadMode::kDirect;
 
-// A file opened for reading, whose bytes are copied out, never looked at in place: a file that
-// shrinks, changes or fails under us costs an error code and nothing else. Errors: kNotFound, kIo
+// A file opened for reading. Its bytes are copied out and never used in place, so a file that
+// shrinks, changes or fails meanwhile costs an error code and nothing else. Errors: kNotFound, kIo
 // with errno, kTruncated with the offset where the file ends.
 //
-// Page cache: in all modes but kCached, what reading leaves there is at most kMostPageCache at any
+// Memory: in all modes but kCached, reading leaves at most kMostPageCache in the page cache at any
 // time (it counts against the memory cgroup of the process) and next to nothing once the file is
-// closed. Other readers of the same file lose it from the cache, too.
-//
-// Threads: read_at() from any, with kDirect from the one that makes the other calls.
+// closed. Other readers of the same file lose those cached pages, too.
+// Threads: read_at() by any; with kDirect only by the thread that makes the other calls.
 class StorageFile {
  public:
   static constexpr ByteCount kMostPageCache = 4 * kMiB;
 
-  // Regular files only. kDirect is kBuffered without a queue, with one that another file uses, and
-  // where the file system has no direct reads. The queue must outlive the file.
+  // Opens regular files only. kDirect falls back to kBuffered without a queue, when another file
+  // uses the queue, and where the file system has no direct reads. The queue must outlive the file.
   static Result<StorageFile> open(const std::string& path, ReadMode mode = ReadMode::kCached,
                                   ReadQueue* queue = nullptr);
 
@@ -57,21 +56,22 @@ class StorageFile {
   std::uint64_t size() const noexcept { return size_; }  // when it was opened
   ReadMode mode() const noexcept { return mode_; }       // the one in use
 
-  // Fills all of `out` from `offset`, or fails. No allocation. Through mapped windows in kMapped.
+  // Fills all of `out` from `offset`, or fails; kMapped reads through mapped windows. No
+  // allocation.
   Result<void> read_at(std::uint64_t offset, std::span<std::byte> out) const noexcept;
 
-  // Brings [offset, offset + size) into `buffer`, of that size or more, or tells where else the
-  // bytes stand until the next window. No allocation.
+  // Returns [offset, offset + size), copied to `buffer` (of that size or more) or in memory that
+  // stays valid until the next window. No allocation.
   Result<std::span<const std::byte>> read_window(std::uint64_t offset, std::size_t size,
                                                  std::span<std::byte> buffer) noexcept;
 
-  // Whether read_ahead() serves what is read afterwards.
+  // Whether read_ahead() speeds up later reads.
   bool reads_ahead() const noexcept { return mode_ != ReadMode::kCached; }
 
-  // Starts to bring these bytes, without waiting: expect() for what read_at() reads soon,
-  // read_ahead() for windows in rising order. False when there is no room for some of them: ask
-  // again when more was read. The caller keeps to most_ahead() altogether. Closing waits for what
-  // nobody read, because it cannot be called back.
+  // Starts fetching these bytes without waiting: expect() for what read_at() reads soon,
+  // read_ahead() for windows in rising order. False when there is no room for some of them; try
+  // again after reading more. The caller asks for at most most_ahead() in total. Closing waits for
+  // the bytes that were not read, because fetching cannot be cancelled.
   static constexpr ByteCount kMostAhead = 1 * kMiB;
   static constexpr std::size_t kMostRanges = 16;
   ByteCount most_ahead() const noexcept {
@@ -92,11 +92,11 @@ class StorageFile {
   ReadQueue* queue_ = nullptr;  // with kDirect
   std::uint32_t mark_ = 0;      // StorageProbe's
   std::uint64_t size_ = 0;
-  std::uint64_t dropped_ = 0;  // the cache holds nothing of ours before this offset
+  std::uint64_t dropped_ = 0;  // none of our pages before this offset are in the cache
   struct Range {
     std::uint64_t from, to;
   };
-  std::array<Range, kMostRanges> ahead_;  // asked for and not yet read
+  std::array<Range, kMostRanges> ahead_;  // requested and not yet read
   std::size_t ahead_count_ = 0;
 };
 

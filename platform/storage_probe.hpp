@@ -9,24 +9,25 @@
 
 namespace zonepack {
 
-// What may stand between every StorageFile and its disk: a test that makes it fail, stall or tell
-// (platform/sim/sim_storage.hpp). A robot has none.
+// A hook between every StorageFile and its disk, with which a test makes reads fail or stall, or
+// records them (platform/sim/sim_storage.hpp). A robot has none.
 class StorageProbe {
  public:
-  using FileMark = std::uint32_t;  // 0: a file whose reads do not matter
+  using FileMark = std::uint32_t;  // 0: a file whose reads are not watched
 
   virtual ~StorageProbe() = default;
 
-  // Before a file is opened; its error is the opener's.
+  // Called before a file is opened; an error goes to the opener.
   virtual Result<FileMark> on_open(const std::string& path) noexcept = 0;
 
-  // Before bytes of a marked file are read or mapped, on the thread that reads; its error is the
-  // reader's.
+  // Called before bytes of a marked file are read or mapped, on the reading thread; an error goes
+  // to the reader.
   virtual Result<void> on_read(FileMark file, std::uint64_t offset,
                                std::uint64_t size) noexcept = 0;
 };
 
-// From now on; nullptr for none. Files opened under one probe must be gone before the next.
+// Applies from now on; nullptr for none. Files opened under one probe must be closed before the
+// next.
 void set_storage_probe(StorageProbe* probe) noexcept;
 
 }  // namespace zonepack

@@ -6,8 +6,10 @@
 
 namespace zonepack {
 
-// Wakes one waiting thread from another. Real-time: post() is one system call at most and never
-// waits.   Threads: any.
+// Wakes one waiting thread from another.
+//
+// Real-time: post() makes at most one system call and never waits.
+// Threads: any.
 class Wakeup {
  public:
   Wakeup();
@@ -16,7 +18,7 @@ class Wakeup {
   Wakeup& operator=(const Wakeup&) = delete;
 
   void post() noexcept;
-  // Returns once post() was called since the last return, or monotonic_ns() has reached the time.
+  // Returns once post() has been called since the last return, or monotonic_ns() reaches the time.
   void wait_until(std::int64_t monotonic_ns) noexcept;
 
  private:

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "platform/atomic_file.hpp"
+#include "platform/base/failure.hpp"
 #include "platform/storage.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 
@@ -23,7 +24,7 @@ std::set<std::string> named_packs(const std::filesystem::path& folder) {
   const Result<const fb::Manifest*> manifest =
       file ? check_manifest(*file) : Result<const fb::Manifest*>(file.error());
   if (!manifest) {
-    throw std::runtime_error(path + ": " + to_string(manifest.error().code) +
+    throw std::runtime_error(path + ": " + reason_text(manifest.error()) +
                              "; without a whole manifest every pack would be removed, so none is: "
                              "build the map again or copy its manifest here");
   }
@@ -51,7 +52,7 @@ bool is_part_of_map(std::string_view name) {
   return whole == kManifestName || whole.ends_with(".zpk");
 }
 
-void refuse_running(const std::filesystem::path& folder, std::string_view name) {
+void refuse_while_written(const std::filesystem::path& folder, std::string_view name) {
   const std::string_view digits = name.substr(name.rfind(kPartMark) + kPartMark.size());
   int process = 0;
   std::from_chars(digits.data(), digits.data() + digits.size(), process);
@@ -71,7 +72,7 @@ std::vector<Leftover> find_leftovers(const std::filesystem::path& folder) {
     if (entry.is_symlink() || !entry.is_regular_file() || named.contains(name)) continue;
     const bool part = is_part_of_map(name);
     if (!part && !is_pack_name(name)) continue;
-    if (part) refuse_running(folder, name);
+    if (part) refuse_while_written(folder, name);
     leftovers.push_back({name, entry.file_size()});
   }
   std::ranges::sort(leftovers, {}, &Leftover::name);

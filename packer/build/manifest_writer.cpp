@@ -19,11 +19,7 @@ void check_limits(const ZonePlan& plan) {
   };
   if (plan.zones.size() > kMaxZones) refuse("zones", plan.zones.size(), kMaxZones);
   if (plan.portals.size() > kMaxPortals) refuse("portals", plan.portals.size(), kMaxPortals);
-  std::vector<std::size_t> portals(plan.zones.size());
-  for (const PlannedPortal& portal : plan.portals) {
-    ++portals[portal.zone_a];
-    ++portals[portal.zone_b];
-  }
+  const std::vector<std::size_t> portals = portals_per_zone(plan);
   for (std::size_t i = 0; i < plan.zones.size(); ++i) {
     const PlannedZone& zone = plan.zones[i];
     std::size_t vertices = zone.polygon.outer.size();

@@ -23,8 +23,8 @@ struct ManifestContent {
   std::uint64_t source_bytes = 0;
 };
 
-// The bytes of manifest.zpm. Throws std::runtime_error when a limit of the format is passed, by
-// name.
+// The bytes of manifest.zpm. Throws std::runtime_error naming the limit of the format that the
+// content exceeds.
 Bytes manifest_bytes(const ManifestContent& content);
 
 }  // namespace zonepack::packer

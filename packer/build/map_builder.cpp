@@ -18,7 +18,7 @@
 namespace zonepack::packer {
 namespace {
 
-constexpr std::uint64_t kFeatureRowBytes = 72;  // what a row of the Feature table takes
+constexpr std::uint64_t kFeatureRowBytes = 72;  // size of a row of the Feature table
 
 PayloadSet payload_set(PayloadMask mask) {
   const auto has = [mask](fb::PayloadKind kind) { return (mask & mask_of(kind)) != 0; };
@@ -28,9 +28,14 @@ PayloadSet payload_set(PayloadMask mask) {
 }
 
 fb::Node node_at(std::int32_t id, const Transform& T_map_base) {
-  // Yaw is for people and pictures: row-major 3x4, so [0] and [4] are cos and sin of it.
+  // Yaw is for people and pictures. The pose is a row-major 3x4 matrix: [0] is cos, [4] is sin.
   const float yaw = std::atan2(T_map_base[4], T_map_base[0]);
   return {T_map_base[3], T_map_base[7], T_map_base[11], yaw, id};
+}
+
+std::vector<Damage> sorted(std::vector<Damage> damages) {
+  std::ranges::sort(damages, {}, [](const Damage& d) { return std::tie(d.signature, d.column); });
+  return damages;
 }
 
 class MapBuilder {
@@ -68,11 +73,11 @@ class MapBuilder {
   ZoneFile zones_;
   BuildSummary summary_;
 
-  std::vector<SignaturePlace> places_;  // of signatures that are packed, by id
-  std::vector<fb::Node> nodes_;         // the same
+  std::vector<SignaturePlace> places_;  // of the signatures to pack, by id
+  std::vector<fb::Node> nodes_;         // of the same signatures
   ZonePlan plan_;
   std::vector<std::uint32_t> zone_of_;
-  std::vector<std::vector<std::size_t>> members_;  // by zone: places in places_
+  std::vector<std::vector<std::size_t>> members_;  // by zone: indices into places_
   std::vector<PackSummary> packs_;
   std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> links_;  // by zone: from, to
   std::set<std::int32_t> skipped_;                                         // damaged
@@ -195,10 +200,7 @@ void MapBuilder::pack_zone(RtabmapDatabase& database, MapFolder& folder, std::si
 void MapBuilder::refuse_damaged() const {
   if (damages_.empty() || options_.damaged == DamagedPolicy::kSkip) return;
   constexpr std::size_t kShown = 20;
-  std::vector<Damage> shown = damages_;
-  std::sort(shown.begin(), shown.end(), [](const Damage& a, const Damage& b) {
-    return std::tie(a.signature, a.column) < std::tie(b.signature, b.column);
-  });
+  const std::vector<Damage> shown = sorted(damages_);
   std::string text =
       options_.database.string() + ": " + std::to_string(shown.size()) +
       " damaged signatures; repair the database, or leave them out with --damaged skip";
@@ -216,8 +218,8 @@ ByteCount MapBuilder::charged(std::size_t zone) const {
          kSlotBytes;
 }
 
-// Weights are shares of decoded bytes; what slots round up on top is found by packing the parts,
-// with a lower limit each time one comes out too large.
+// Weights are shares of decoded bytes. Only packing the parts shows how much the slots round up, so
+// this packs again with a lower limit for as long as a part comes out too large.
 void MapBuilder::split(MapFolder& folder) {
   const auto largest = [this] {
     ByteCount most = 0;
@@ -321,10 +323,7 @@ void MapBuilder::finish(MapFolder& folder) {
     }
     summary_.zone_names.push_back(plan_.zones[i].name);
   }
-  summary_.damages = damages_;
-  std::sort(summary_.damages.begin(), summary_.damages.end(), [](const Damage& a, const Damage& b) {
-    return std::tie(a.signature, a.column) < std::tie(b.signature, b.column);
-  });
+  summary_.damages = sorted(damages_);
   summary_.packs = std::move(packs_);
 }
 

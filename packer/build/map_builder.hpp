@@ -15,7 +15,7 @@
 #include "packer/zones/zone_file.hpp"
 #include "runtime/pack_format/file/accounting.hpp"
 
-// From a database and a zone file to a map: a folder with one pack per zone and a manifest.
+// Builds a map, a folder with one pack per zone and a manifest, from a database and a zone file.
 namespace zonepack::packer {
 
 enum class UnlinkedPolicy : std::uint8_t { kOdometry, kDrop, kError };
@@ -31,7 +31,7 @@ struct BuildOptions {
   double snap_m = kDefaultSnap_m;
   UnlinkedPolicy unlinked = UnlinkedPolicy::kOdometry;
   DamagedPolicy damaged = DamagedPolicy::kError;
-  unsigned jobs = 0;  // 0: one for each core
+  unsigned jobs = 0;  // 0: one per core
 };
 
 struct BuildSummary {
@@ -43,7 +43,7 @@ struct BuildSummary {
   std::size_t unlinked_dropped = 0;
   std::vector<Orphan> orphans;
   std::size_t orphans_dropped = 0;
-  std::vector<Damage> damages;  // of signatures skipped
+  std::vector<Damage> damages;  // of the signatures that were skipped
   std::vector<SplitZone> split;
   std::vector<std::string> warnings;  // complete sentences
   std::vector<std::string> zone_names;
@@ -54,13 +54,14 @@ struct BuildSummary {
   ByteCount feature_row_bytes = 0;  // 72 bytes for each feature of the source
   ByteCount source_bytes = 0;       // feature rows and the zlib blobs of scans and grids
   SmallestBudget smallest;
-  bool unchanged = false;  // the manifest that stood there was the same
+  bool unchanged = false;  // the folder held the same manifest already
 };
 
 // Builds the map. The manifest's rename is the commit: until then, and after any failure, the map
-// that stood in `out` is as it was. Same input and options, same bytes, for any number of jobs.
-// Memory: the outline of the database, and for each job a few slots and one signature.
+// in `out` stays as it was. The same input and options give the same bytes for any number of jobs.
 // Throws std::runtime_error with a complete message.
+//
+// Memory: the outline of the database and, per job, a few slots and one signature.
 BuildSummary build_map(const BuildOptions& options, Progress& progress);
 
 }  // namespace zonepack::packer

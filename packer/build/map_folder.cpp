@@ -2,11 +2,11 @@
 #include "packer/build/map_folder.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 #include <system_error>
 
 #include "platform/atomic_file.hpp"
+#include "platform/base/failure.hpp"
 #include "platform/storage.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 
@@ -41,8 +41,7 @@ bool MapFolder::commit(std::span<const std::byte> manifest) {
   }
   const std::string_view text(reinterpret_cast<const char*>(manifest.data()), manifest.size());
   if (const Result<void> written = write_file_atomically(path, text); !written) {
-    throw std::runtime_error(path + ": cannot write the manifest: " +
-                             std::strerror(static_cast<int>(written.error().detail)));
+    throw std::runtime_error(cannot_write(path, written.error()).message);
   }
   std::set<std::string> used;
   const fb::Manifest& checked = **check_manifest(manifest);

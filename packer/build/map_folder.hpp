@@ -9,22 +9,24 @@
 
 namespace zonepack::packer {
 
-// The folder of a map while a new version of it is written. Packs come under names of their own;
-// the manifest's rename makes them the map. Without commit (an error), packs that were not there
-// before are removed. Threads: keep() from any; the rest from one.
+// The folder of a map while a new version of it is written. Packs get names of their own; the
+// manifest's rename makes them the map. Without commit() (after an error), the destructor removes
+// packs that were not there before.
+//
+// Threads: keep() by any; the rest by one.
 class MapFolder {
  public:
-  // Creates the folder when it is missing. Throws std::runtime_error when that fails.
+  // Creates the folder if needed. Throws std::runtime_error when that fails.
   explicit MapFolder(std::filesystem::path path);
   ~MapFolder();
 
   const std::filesystem::path& path() const noexcept { return path_; }
 
-  // Tells of a pack that has been written here.
+  // Records a pack that has been written here.
   void keep(const std::string& file);
 
-  // Writes the manifest; true when the same stood there already. Packs of no manifest stay until
-  // pruned, those that only this build tried and gave up are removed.
+  // Writes the manifest; true when the folder held the same one already. Packs of earlier manifests
+  // stay until pruned; packs that this build wrote and then replaced are removed.
   bool commit(std::span<const std::byte> manifest);
 
  private:

@@ -10,16 +10,18 @@
 
 namespace zonepack::packer {
 
-// Tells how far a long stage is: on a terminal a line that is drawn anew (count, rate, time left),
-// else one line when the stage ends. Threads: advance() from any; the rest from one.
+// Reports the progress of a long stage: on a terminal by a line that is redrawn (count, rate, time
+// left), else by one line when the stage ends.
+//
+// Threads: advance() by any; the rest by one.
 class Progress {
  public:
-  // `terminal`: whether `out` is one.
+  // `terminal`: whether `out` is a terminal.
   Progress(std::ostream& out, bool terminal) : out_(out), terminal_(terminal) {}
 
   void start(std::string stage, std::size_t total, std::string unit);
   void advance(std::size_t count = 1);
-  // Ends the stage with a line; `note` says what came of it.
+  // Ends the stage with a line; `note` gives the result.
   void finish(const std::string& note);
 
  private:

@@ -137,7 +137,7 @@ void add_build_command(CLI::App& app, int& exit_code) {
       ->required()
       ->type_name("DIR");
   add_payload_option(*command, "--payload", options.payload,
-                     "what to pack beside the core, of features,scan,grid,image,depth,userdata; "
+                     "what to pack besides the core, of features,scan,grid,image,depth,userdata; "
                      "default all");
   add_size_option(*command, "--max-zone-bytes", options.max_zone_bytes,
                   "split zones that would charge more into parts along their length");
@@ -160,7 +160,7 @@ void add_build_command(CLI::App& app, int& exit_code) {
       *command, "--damaged", options.damaged,
       {{"error", DamagedPolicy::kError}, {"skip", DamagedPolicy::kSkip}},
       "signatures that cannot be read whole: error (default) or skip");
-  command->add_option("--jobs", options.jobs, "threads; default one for each core")
+  command->add_option("--jobs", options.jobs, "threads; default one per core")
       ->check(CLI::Range(1, 256))
       ->type_name("N");
   arguments->json.add_option(*command);

@@ -5,7 +5,7 @@
 
 namespace zonepack::packer {
 
-// zonepack build: from a database and a zone file to a map.
+// `zonepack build`: builds a map from a database and a zone file.
 void add_build_command(CLI::App& app, int& exit_code);
 
 }  // namespace zonepack::packer

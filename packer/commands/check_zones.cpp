@@ -11,6 +11,7 @@
 #include "packer/console/command_line.hpp"
 #include "packer/sources/rtabmap_database.hpp"
 #include "packer/zones/partition.hpp"
+#include "platform/base/utf8.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -61,15 +62,6 @@ ordered_json to_json(const PlannedPortal& portal, const ZonePlan& plan) {
           {"length_m", distance_m(p, q)}};
 }
 
-std::vector<std::size_t> portals_per_zone(const ZonePlan& plan) {
-  std::vector<std::size_t> portals(plan.zones.size());
-  for (const PlannedPortal& portal : plan.portals) {
-    ++portals[portal.zone_a];
-    ++portals[portal.zone_b];
-  }
-  return portals;
-}
-
 ordered_json zones_json(const ZonePlan& plan, const std::optional<SignatureCounts>& counts) {
   const std::vector<std::size_t> portals = portals_per_zone(plan);
   ordered_json zones = ordered_json::array();
@@ -104,22 +96,15 @@ std::string plural(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-// Columns as wide as what stands in them; a character of UTF-8 counts once.
-std::size_t shown_width(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u;
-  }));
-}
-
 void print_zones(const ZonePlan& plan, const std::optional<SignatureCounts>& counts,
                  std::ostream& text) {
   std::size_t name_width = 4, type_width = 4;
   for (const PlannedZone& zone : plan.zones) {
-    name_width = std::max(name_width, shown_width(zone.name));
-    type_width = std::max(type_width, shown_width(zone.zone_type));
+    name_width = std::max(name_width, utf8_width(zone.name));
+    type_width = std::max(type_width, utf8_width(zone.zone_type));
   }
   const auto padded = [](const std::string& cell, std::size_t width) {
-    return cell + std::string(width - shown_width(cell), ' ');
+    return cell + std::string(width - utf8_width(cell), ' ');
   };
   text << "\n"
        << padded("zone", name_width) << "  " << padded("type", type_width)
@@ -148,7 +133,8 @@ void print_signatures(const SignatureCounts& counts, const ZonePlan& plan, std::
   if (orphans.size() > kOrphansPrinted) {
     text << "  and " << orphans.size() - kOrphansPrinted << " more (--json lists all)\n";
   }
-  if (!orphans.empty()) text << "  build gives them to the nearest zone unless told by --orphans\n";
+  if (!orphans.empty())
+    text << "  build gives them to the nearest zone unless --orphans says otherwise\n";
   if (counts.unlinked > 0) {
     text << "warning: " << plural(counts.unlinked, "signature")
          << " without an optimised pose not counted; build places them as --unlinked says\n";

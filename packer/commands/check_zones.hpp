@@ -19,8 +19,8 @@ struct CheckZonesOptions {
 };
 
 // Reports every fault and warning of a zone file at once, its zones and portals and, with a
-// database, how many signatures each zone holds and which stand in none. Text for people goes to
-// `text`, the same to `json`. Returns the exit code: 0 without faults, 1 with. Throws
+// database, how many signatures each zone holds and which are in none. Writes text for people to
+// `text` and the same content to `json`. Returns the exit code: 0 without faults, else 1. Throws
 // std::runtime_error when a file cannot be read.
 int check_zones(const CheckZonesOptions& options, std::ostream& text, nlohmann::ordered_json& json);
 

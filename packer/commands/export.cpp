@@ -14,6 +14,7 @@
 
 #include "packer/export/zone_export.hpp"
 #include "platform/atomic_file.hpp"
+#include "platform/base/failure.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -74,8 +75,7 @@ void run_export(const ExportArguments& arguments) {
   const std::vector<ZoneId> zones = chosen_zones(map, arguments.zones);
   const auto require = [&](const Result<void>& written) {
     if (written) return;
-    throw std::runtime_error(arguments.out + ": cannot write: " +
-                             std::strerror(static_cast<int>(written.error().detail)) +
+    throw std::runtime_error(cannot_write(arguments.out, written.error()).message +
                              "; check that its folder exists, is writable and has room");
   };
   std::optional<AtomicFile> file;

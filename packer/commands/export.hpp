@@ -5,7 +5,8 @@
 
 namespace zonepack::packer {
 
-// `zonepack export DIR [--zone Z] --jsonl`: what the packs hold, for comparison with the database.
+// `zonepack export DIR [--zone Z] --jsonl`: prints what the packs hold, for comparison with the
+// database.
 void add_export_command(CLI::App& app, int& exit_code);
 
 }  // namespace zonepack::packer

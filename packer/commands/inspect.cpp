@@ -17,7 +17,7 @@ void add_inspect_command(CLI::App& app, int& exit_code) {
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const command = app.add_subcommand(
-      "inspect", "Tell what a map or a pack consists of, from its manifest or index");
+      "inspect", "Show what a map or a pack consists of, from its manifest or index");
   command->add_option("PATH", arguments->path, "folder of a map, or a pack (*.zpk)")
       ->required()
       ->type_name("DIR|PACK");

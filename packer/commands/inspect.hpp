@@ -5,7 +5,7 @@
 
 namespace zonepack::packer {
 
-// zonepack inspect: what a map or a pack consists of.
+// `zonepack inspect`: shows what a map or a pack consists of.
 void add_inspect_command(CLI::App& app, int& exit_code);
 
 }  // namespace zonepack::packer

@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <set>
@@ -18,6 +17,7 @@
 #include "packer/outline/paths.hpp"
 #include "packer/sources/rtabmap_database.hpp"
 #include "platform/atomic_file.hpp"
+#include "platform/base/failure.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -25,23 +25,28 @@ namespace {
 using nlohmann::ordered_json;
 using Files = std::vector<std::pair<std::string, std::string>>;  // name, content
 
-struct FloorPlan {
+struct MapDrawing {
   MapImage image;
   std::string source;
   std::size_t grids = 0;
   std::vector<std::string> warnings;
 };
 
-FloorPlan from_grids(RtabmapDatabase& database) {
-  FloorPlan plan;
+MapDrawing from_grids(RtabmapDatabase& database) {
+  MapDrawing plan;
   plan.source = "local grids";
-  PayloadSet wanted{false, false, true, false, false, false};
+  constexpr PayloadSet kGridOnly{.features = false,
+                                 .scan = false,
+                                 .grid = true,
+                                 .image = false,
+                                 .depth = false,
+                                 .userdata = false};
   std::optional<OccupancyMap> map;
   SignatureRecord record;
   for (const NodeOutline& node : database.outline().nodes) {
     if (!node.pose || node.damaged) continue;
     try {
-      database.read(node.id, wanted, record);
+      database.read(node.id, kGridOnly, record);
     } catch (const DamagedSignature& damage) {
       plan.warnings.push_back(std::string(damage.what()) + "; its grid is left out");
       continue;
@@ -55,15 +60,14 @@ FloorPlan from_grids(RtabmapDatabase& database) {
   return plan;
 }
 
-FloorPlan floor_plan(RtabmapDatabase& database) {
+MapDrawing drawing_of(RtabmapDatabase& database) {
   const std::optional<OptimisedMap>& own = database.outline().optimised_map;
   if (own && own->resolution > 0) return {image_of(*own), "the database's own map", 0, {}};
   return from_grids(database);
 }
 
-[[noreturn]] void cannot_write(const std::string& path, const Error& error) {
-  throw std::runtime_error(path +
-                           ": cannot write: " + std::strerror(static_cast<int>(error.detail)) +
+[[noreturn]] void refuse(const std::string& path, const Error& error) {
+  throw std::runtime_error(cannot_write(path, error).message +
                            "; the files that were there are untouched");
 }
 
@@ -71,26 +75,26 @@ void write_together(const std::filesystem::path& folder, const Files& files) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
-    throw std::runtime_error(folder.string() + ": cannot make the folder: " + error.message());
+    throw std::runtime_error(folder.string() + ": cannot create the folder: " + error.message());
   std::vector<AtomicFile> parts;
   for (const auto& [name, content] : files) {
     const std::string path = (folder / name).string();
-    if (std::filesystem::is_directory(path)) cannot_write(path, {ErrorCode::kIo, EISDIR});
+    if (std::filesystem::is_directory(path)) refuse(path, {ErrorCode::kIo, EISDIR});
     Result<AtomicFile> part = AtomicFile::create(path);
-    if (!part) cannot_write(path, part.error());
+    if (!part) refuse(path, part.error());
     if (const Result<void> written = part->write(content); !written) {
-      cannot_write(path, written.error());
+      refuse(path, written.error());
     }
     parts.push_back(std::move(*part));
   }
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (const Result<void> done = parts[i].commit(); !done) {
-      cannot_write((folder / files[i].first).string(), done.error());
+      refuse((folder / files[i].first).string(), done.error());
     }
   }
 }
 
-ordered_json to_json(const FloorPlan& plan) {
+ordered_json to_json(const MapDrawing& plan) {
   const MapImage& image = plan.image;
   if (image.cells.empty()) return nullptr;
   return {{"source", plan.source},
@@ -134,7 +138,7 @@ void print_next_step(const OutlineOptions& options, bool with_map, std::ostream&
 void write_outline(const OutlineOptions& options, std::ostream& text, ordered_json& json) {
   RtabmapDatabase database(options.db);
   const MapOutline& outline = database.outline();
-  const FloorPlan plan = floor_plan(database);
+  const MapDrawing plan = drawing_of(database);
   const std::vector<Path> paths = paths_of(outline);
   const std::size_t linked = outline.nodes.size() - outline.unlinked();
 
@@ -201,7 +205,7 @@ void add_outline_command(CLI::App& app, int& exit_code) {
       "from the\n"
       "local grids), map.wld (for QGIS), signatures.geojson and trajectories.geojson, all in "
       "metres of\n"
-      "the map frame. Files of an earlier run are replaced only when all are written.");
+      "the map frame. Files of an earlier run are replaced only after all have been written.");
   command->callback([arguments, &exit_code] {
     ordered_json json;
     write_outline(arguments->options, arguments->json.text(), json);

@@ -13,9 +13,9 @@ struct OutlineOptions {
   std::filesystem::path out;
 };
 
-// Writes what somebody needs to draw zones: map.pgm, map.yaml and map.wld (when the database holds
-// a map or local grids), signatures.geojson and trajectories.geojson. All files are written beside
-// their names first and renamed together at the end: after a failure the old ones stand. Throws
+// Writes what a person needs for drawing zones: map.pgm, map.yaml and map.wld (when the database
+// holds a map or local grids), signatures.geojson and trajectories.geojson. All files are written
+// as parts first and renamed together at the end, so a failure leaves the old ones. Throws
 // std::runtime_error.
 void write_outline(const OutlineOptions& options, std::ostream& text, nlohmann::ordered_json& json);
 

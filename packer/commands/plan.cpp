@@ -19,9 +19,9 @@ constexpr char kFormulas[] =
     "smallest budget    = fixed + (pinned + largest pair of neighbours) x slot\n"
     "live change of map = smallest budget + fixed + largest zone x slot\n"
     "where slot is a slot with its tables, and fixed are tables, manifest, zone graph and read\n"
-    "buffers. While a map changes, both maps' tables stand, and the robot's zone of the new map "
+    "buffers. While a map changes, both maps' tables exist, and the robot's zone of the new map "
     "is\n"
-    "loaded beside the pair of the old one; the new map is taken to be as large as this one.\n"
+    "loaded besides the pair of the old one; the new map is assumed to be as large as this one.\n"
     "Exit code 1 when --budget is below the smallest.";
 
 struct PlanArguments {
@@ -65,7 +65,7 @@ nlohmann::ordered_json to_json(const MapPlan& plan, const PlanArguments& argumen
   json["slot_bytes"] = kSlotBytes;
   json["table_bytes_per_slot"] = kTableBytesPerSlot;
   json["zones"] = nlohmann::ordered_json::array();
-  for (const PlanZone& zone : plan.zones) {
+  for (const ZoneCost& zone : plan.zones) {
     json["zones"].push_back({{"name", zone.name},
                              {"signatures", zone.signatures},
                              {"slots", zone.slots},
@@ -112,7 +112,7 @@ void print(const BudgetPlan& b, const MapPlan& plan, std::ostream& out) {
 
 void print(const MapPlan& plan, std::ostream& out) {
   std::size_t width = 4;
-  for (const PlanZone& zone : plan.zones) width = std::max(width, zone.name.size());
+  for (const ZoneCost& zone : plan.zones) width = std::max(width, zone.name.size());
   const auto row = [&](const std::string& name, const auto& signatures, const auto& charged,
                        const auto& stored) {
     out << std::left << std::setw(static_cast<int>(width)) << name << std::right << std::setw(12)
@@ -121,7 +121,7 @@ void print(const MapPlan& plan, std::ostream& out) {
   row("zone", "signatures", "charged bytes", "stored bytes");
   out << "\n";
   std::uint64_t signatures = 0, charged = 0, stored = 0;
-  for (const PlanZone& zone : plan.zones) {
+  for (const ZoneCost& zone : plan.zones) {
     row(zone.name, zone.signatures, zone.charged_bytes, zone.stored_bytes);
     out << (zone.pinned ? "  pinned\n" : "\n");
     signatures += zone.signatures;
@@ -143,14 +143,14 @@ void print(const MapPlan& plan, std::ostream& out) {
 void add_plan_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<PlanArguments>();
   CLI::App* const command =
-      app.add_subcommand("plan", "Tell what a map costs in memory, and what a budget allows");
+      app.add_subcommand("plan", "Show what a map costs in memory, and what a budget allows");
   command->footer(kFormulas);
   command->add_option("DIR", arguments->folder, "folder of the map")->required();
   CLI::Option* const budget =
-      add_size_option(*command, "--budget", arguments->budget, "tell what this budget allows");
+      add_size_option(*command, "--budget", arguments->budget, "show what this budget allows");
   CLI::Option* const payload =
       add_payload_option(*command, "--payload", arguments->payload,
-                         "what to load beside the core; default features,scan,grid");
+                         "what to load besides the core; default features,scan,grid");
   command->add_option("--pin", arguments->pins, "a zone that is always held; repeatable")
       ->type_name("ZONE")
       ->take_all()

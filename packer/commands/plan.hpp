@@ -5,8 +5,8 @@
 
 namespace zonepack::packer {
 
-// `zonepack plan DIR`: what a map costs in memory and what a budget allows; exit code 1 when the
-// budget given is below the smallest.
+// `zonepack plan DIR`: shows what a map costs in memory and what a budget allows; exit code 1 when
+// the given budget is below the smallest.
 void add_plan_command(CLI::App& app, int& exit_code);
 
 }  // namespace zonepack::packer

@@ -5,7 +5,7 @@
 
 namespace zonepack::packer {
 
-// zonepack prune: removes what builds have left in a map's folder.
+// `zonepack prune`: removes what builds have left behind in a map's folder.
 void add_prune_command(CLI::App& app, int& exit_code);
 
 }  // namespace zonepack::packer

@@ -2,35 +2,19 @@
 #include "packer/commands/report.hpp"
 
 #include <CLI/CLI.hpp>
-#include <cstring>
 #include <memory>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
 
 #include "packer/console/command_line.hpp"
-#include "platform/storage.hpp"
+#include "packer/decode/map_reader.hpp"
 #include "runtime/pack_format/file/accounting.hpp"
 #include "runtime/pack_format/file/checksum.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 
 namespace zonepack::packer {
 namespace {
-
-std::string text_or_empty(const flatbuffers::String* text) {
-  return text == nullptr ? std::string() : text->str();
-}
-
-std::runtime_error cannot_read(const std::string& path, const Error& error) {
-  if (error.code == ErrorCode::kNotFound) {
-    return std::runtime_error(path + ": not found; is this a map that 'zonepack build' wrote?");
-  }
-  if (error.code == ErrorCode::kIo) {
-    return std::runtime_error(path + ": " + std::strerror(static_cast<int>(error.detail)));
-  }
-  return std::runtime_error(path + ": " + to_string(error.code) +
-                            "; 'zonepack verify' tells where it is damaged");
-}
 
 std::string payload_names(PayloadMask payload) {
   const std::string list = payload_text(payload);
@@ -41,19 +25,14 @@ std::string payload_names(PayloadMask payload) {
 
 report::PackedZone zone_of(const fb::Zone& zone, std::uint32_t slots, PayloadMask payload) {
   report::PackedZone out{.name = zone.name()->str(),
-                         .zone_type = text_or_empty(zone.zone_type()),
-                         .label = text_or_empty(zone.label()),
+                         .zone_type = flatbuffers::GetString(zone.zone_type()),
+                         .label = flatbuffers::GetString(zone.label()),
                          .polygon = polygon_of(zone),
                          .signatures = zone.signatures(),
                          .features = zone.features(),
                          .charged_bytes = slots * kSlotBytes,
-                         .stored_bytes = 0,
+                         .stored_bytes = chunk_bytes(zone, payload).stored,
                          .signature_positions = {}};
-  const PayloadMask loaded = payload_closure(payload, zone.grid_needs_scan());
-  for (const fb::PayloadBytes* bytes : *zone.payloads()) {
-    const bool wanted = (loaded & mask_of(static_cast<fb::PayloadKind>(bytes->kind()))) != 0;
-    if (wanted) out.stored_bytes += bytes->stored();
-  }
   if (zone.nodes() == nullptr) return out;
   for (const fb::Node* node : *zone.nodes())
     out.signature_positions.push_back({node->x(), node->y()});
@@ -68,9 +47,9 @@ std::string pair_text(const fb::Manifest& manifest, const LargestPair& pair) {
 }
 
 std::string source_text(const fb::Provenance& source) {
-  std::string text = "Packed from " + text_or_empty(source.source_kind());
-  const std::string version = text_or_empty(source.source_version());
-  const std::string packer = text_or_empty(source.packer_version());
+  std::string text = "Packed from " + flatbuffers::GetString(source.source_kind());
+  const std::string version = flatbuffers::GetString(source.source_version());
+  const std::string packer = flatbuffers::GetString(source.packer_version());
   if (!version.empty()) text += " " + version;
   if (!packer.empty()) text += " by zonepack " + packer;
   return text + ".";
@@ -79,18 +58,13 @@ std::string source_text(const fb::Provenance& source) {
 }  // namespace
 
 report::PackReport read_pack_report(const std::string& folder, PayloadMask payload) {
-  const std::string path = folder + "/" + std::string(kManifestName);
-  const Result<std::vector<std::byte>> file = read_file(path, kMaxManifestFileBytes);
-  if (!file) throw cannot_read(path, file.error());
-  const Result<const fb::Manifest*> checked = check_manifest(*file);
-  if (!checked) throw cannot_read(path, checked.error());
-  const fb::Manifest& manifest = **checked;
-
+  const MapReader reader(folder);
+  const fb::Manifest& manifest = reader.manifest();
   const MapCosts costs = map_costs(manifest, payload);
   const SmallestBudget smallest = smallest_budget(costs, {});
   report::PackReport map;
   map.map = folder;
-  map.version = to_hex(manifest_digest(*file));
+  map.version = to_hex(manifest_digest(reader.manifest_file()));
   map.payload = payload_names(payload & manifest.payload_mask());
   map.source = source_text(*manifest.provenance());
   const std::uint64_t slots =
@@ -123,7 +97,7 @@ void add_report_command(CLI::App& app, int& exit_code) {
       ->check(
           [](const std::string& path) { return report::check_report_name(path).error().message; });
   add_payload_option(*command, "--payload", options->payload,
-                     "what to count beside the core; default features,scan,grid");
+                     "what to count besides the core; default features,scan,grid");
   command->callback([options, &exit_code] {
     const report::Report page =
         report::make_pack_report(read_pack_report(options->folder, options->payload));

@@ -9,12 +9,12 @@
 
 namespace zonepack::packer {
 
-// Reads the manifest of a packed map for drawing; bytes are those of `payload`, of which kinds that
-// the map does not hold are left out. Throws with a complete message.
+// Reads the manifest of a packed map for drawing. Byte counts are those of the kinds of `payload`
+// that the map holds. Throws std::runtime_error with a complete message.
 report::PackReport read_pack_report(const std::string& folder,
                                     PayloadMask payload = kDefaultPayload);
 
-// `zonepack report DIR --out FILE.html|.png|.svg [--payload LIST]`; sets exit_code when it ran.
+// `zonepack report DIR --out FILE.html|.png|.svg [--payload LIST]`; sets exit_code when it has run.
 void add_report_command(CLI::App& app, int& exit_code);
 
 }  // namespace zonepack::packer

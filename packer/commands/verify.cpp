@@ -22,9 +22,9 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 
 Verdict verify(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return verify_map(FolderSource(path));
+  if (!std::filesystem::is_regular_file(path, ignored)) return verify_map(FolderFiles(path));
   const std::string name = path.filename().string();
-  const FolderSource folder(folder_of(path));
+  const FolderFiles folder(folder_of(path));
   return name == kManifestName ? verify_map(folder) : verify_one_pack(folder, name);
 }
 

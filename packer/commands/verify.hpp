@@ -5,7 +5,7 @@
 
 namespace zonepack::packer {
 
-// zonepack verify: whether a map or a pack is whole; exit code 1 when it is not.
+// `zonepack verify`: checks whether a map or a pack is whole; exit code 1 when it is not.
 void add_verify_command(CLI::App& app, int& exit_code);
 
 }  // namespace zonepack::packer

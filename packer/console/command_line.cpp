@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "packer/console/command_line.hpp"
 
-#include <cstring>
 #include <iostream>
 #include <stdexcept>
 
 #include "platform/atomic_file.hpp"
+#include "platform/base/failure.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -87,8 +87,7 @@ void JsonOutput::write(const nlohmann::ordered_json& json) const {
     return;
   }
   if (const Result<void> written = write_file_atomically(file_, text); !written) {
-    throw std::runtime_error(
-        file_ + ": cannot write JSON: " + std::strerror(static_cast<int>(written.error().detail)));
+    throw std::runtime_error(cannot_write(file_, written.error()).message);
   }
 }
 

@@ -11,7 +11,7 @@
 #include "platform/base/byte_count.hpp"
 #include "runtime/pack_format/chunk_view.hpp"
 
-// What the subcommands share of their command lines.
+// What the command lines of the subcommands share.
 namespace zonepack::packer {
 
 // Adds an option that takes a SIZE: integer bytes, or with suffix KiB, MiB, GiB.
@@ -22,7 +22,7 @@ CLI::Option* add_size_option(CLI::App& app, const std::string& name, ByteCount& 
 CLI::Option* add_payload_option(CLI::App& app, const std::string& name, PayloadMask& target,
                                 const std::string& help);
 
-// Adds an option that takes one of a few words, each of which stands for a value.
+// Adds an option that takes one of a few words, each standing for a value.
 template <typename Value>
 CLI::Option* add_choice_option(CLI::App& app, const std::string& name, Value& target,
                                const std::vector<std::pair<std::string, Value>>& choices,
@@ -47,11 +47,11 @@ CLI::Option* add_choice_option(CLI::App& app, const std::string& name, Value& ta
 // "features,scan,grid".
 std::string payload_text(PayloadMask mask);
 
-// Where --json goes: FILE, or standard output for "-", or nowhere when empty.
+// The destination of --json: FILE, standard output for "-", or nowhere when empty.
 class JsonOutput {
  public:
   void add_option(CLI::App& app);
-  // Text for people: standard output, unless JSON has taken it.
+  // The stream for people: standard output, or standard error when JSON goes to standard output.
   std::ostream& text() const;
   // Writes the file whole or not at all; throws std::runtime_error when it cannot.
   void write(const nlohmann::ordered_json& json) const;

@@ -5,15 +5,10 @@
 #include <cstdio>
 
 #include "platform/base/require.hpp"
+#include "platform/base/utf8.hpp"
 
 namespace zonepack::packer {
 namespace {
-
-// Columns are counted in code points, as a terminal shows most of them.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
 
 bool is_number(const std::string& text) {
   return text.find_first_not_of("0123456789.-") == text.npos;
@@ -32,14 +27,14 @@ void TextTable::print(std::ostream& out) const {
   std::vector<bool> numbers(columns, rows_.size() > 1);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     for (std::size_t c = 0; c < columns; ++c) {
-      widths[c] = std::max(widths[c], width_of(rows_[r][c]));
+      widths[c] = std::max(widths[c], utf8_width(rows_[r][c]));
       if (r > 0 && !is_number(rows_[r][c])) numbers[c] = false;
     }
   }
   for (const auto& row : rows_) {
     std::string line;
     for (std::size_t c = 0; c < columns; ++c) {
-      const std::string pad(widths[c] - width_of(row[c]), ' ');
+      const std::string pad(widths[c] - utf8_width(row[c]), ' ');
       line += (c == 0 ? "" : "  ") + (numbers[c] ? pad + row[c] : row[c] + pad);
     }
     line.erase(line.find_last_not_of(' ') + 1);

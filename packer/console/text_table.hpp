@@ -7,11 +7,12 @@
 
 namespace zonepack::packer {
 
-// Rows of text in columns: the first row is the head; columns whose cells are numbers stand right.
+// Rows of text in columns; the first row is the head. Columns of numbers are aligned to the right,
+// and widths are counted in code points, as most terminals show them.
 class TextTable {
  public:
   explicit TextTable(std::vector<std::string> head) { rows_.push_back(std::move(head)); }
-  // As many cells as the head has.
+  // `cells`: as many as in the head.
   void add(std::vector<std::string> cells);
   void print(std::ostream& out) const;
 

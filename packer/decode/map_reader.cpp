@@ -2,9 +2,10 @@
 #include "packer/decode/map_reader.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
+
+#include "platform/base/failure.hpp"
 
 namespace zonepack::packer {
 
@@ -12,18 +13,18 @@ void MapReader::fail(const std::string& path, const Error& error) {
   std::string text = path + ": ";
   switch (error.code) {
     case ErrorCode::kNotFound:
-      text += "not found; give the folder of a map that 'zonepack build' wrote whole";
+      text += "not found; is this a map that 'zonepack build' wrote?";
       break;
     case ErrorCode::kIo:
-      text += std::string("cannot be read: ") + std::strerror(static_cast<int>(error.detail));
+      text += "cannot be read: " + reason_text(error);
       break;
     case ErrorCode::kBadVersion:
       text += "format version " + std::to_string(error.detail) +
-              " is not known here; use the zonepack that wrote it, or build the map anew";
+              " is unknown to this program; use the zonepack that wrote it, or build the map again";
       break;
     default:
       text += std::string(to_string(error.code)) + " (" + std::to_string(error.detail) +
-              "); 'zonepack verify' tells what is damaged, 'zonepack build' makes it anew";
+              "); 'zonepack verify' reports what is damaged, 'zonepack build' makes the map again";
   }
   throw std::runtime_error(text);
 }

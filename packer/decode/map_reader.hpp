@@ -11,7 +11,7 @@
 
 namespace zonepack::packer {
 
-// A packed map opened by a tool: the manifest read and checked whole, packs on request.
+// A packed map opened by a tool: reads and checks the whole manifest at once, packs on request.
 // Throws std::runtime_error with a complete message that names the file.
 class MapReader {
  public:
@@ -24,10 +24,10 @@ class MapReader {
   std::vector<ZoneId> zones_named(const std::string& name) const;
 
   std::string pack_path(const fb::Zone& zone) const;
-  // The pack that the manifest names for the zone, and no other.
+  // Opens the pack that the manifest names for the zone; refuses any other.
   PackReader open_pack(const fb::Zone& zone) const;
 
-  // For errors met while reading what open_pack() gave.
+  // Throws for an error of `path`, such as a pack from open_pack().
   [[noreturn]] static void fail(const std::string& path, const Error& error);
 
  private:

@@ -87,7 +87,7 @@ class SignatureDecoder {
     }
   }
 
-  // All rows of a table as they were: row_bytes each.
+  // All rows of a table in their original form; sets row_bytes to the size of one.
   Bytes rows_of(const TableView& table, Field field, std::uint32_t* row_bytes) {
     Bytes out;
     for (const RecordView& record : table.records()) {

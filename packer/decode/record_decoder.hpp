@@ -8,9 +8,9 @@
 
 namespace zonepack::packer {
 
-// A signature as it was before it was packed, bit for bit, as far as the view's chunks hold it:
-// payload kinds that were not decoded or packed are empty. Throws std::runtime_error naming the
-// signature when tables contradict each other (a damaged pack whose checksums hold).
+// Restores a signature to what it was before packing, bit for bit, as far as the view's chunks hold
+// it: payload kinds that were not decoded or packed are empty. Throws std::runtime_error naming the
+// signature when its tables contradict each other (a damaged pack with valid checksums).
 SignatureRecord decode_record(const ZoneView& zone, std::uint32_t ordinal);
 
 }  // namespace zonepack::packer

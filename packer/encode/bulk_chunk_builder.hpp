@@ -11,12 +11,12 @@
 
 namespace zonepack::packer {
 
-// Fills one bulk chunk with rows of tables, up to a given length of its decoded form.
+// Fills one bulk chunk with rows of tables, up to a given decoded size.
 class BulkChunkBuilder {
  public:
-  // Adds as many of the table's rows from `first` as fit in `capacity` bytes of the whole chunk,
-  // and returns how many; all of them, or a piece worth having, or none. `all_fit` tells whether
-  // the table ended here (a table of no rows does).
+  // Adds as many of the table's rows from `first` on as fit into a chunk of `capacity` bytes: all
+  // of them, a piece worth storing, or none. `all_fit`: whether this reaches the table's end (true
+  // for a table without rows).
   struct Added {
     std::uint32_t rows = 0;
     bool all_fit = false;
@@ -28,7 +28,7 @@ class BulkChunkBuilder {
   std::uint64_t size_bound() const noexcept { return size_with(0, 0, 0); }
   std::uint32_t first_signature() const noexcept { return first_signature_; }
   std::uint32_t last_signature() const noexcept { return last_signature_; }
-  // Whether some rows are told as points of the scan.
+  // Whether some rows are stored as indices of scan points.
   bool needs_scan() const noexcept { return needs_scan_; }
 
   // The chunk as a FlatBuffer; the builder is empty afterwards.
@@ -44,7 +44,7 @@ class BulkChunkBuilder {
   std::vector<fb::Record> records_;
   std::vector<fb::Column> columns_;
   Bytes bytes_;
-  std::unordered_map<std::string, std::uint32_t> places_;  // of short columns, which are shared
+  std::unordered_map<std::string, std::uint32_t> places_;  // of short columns, stored once each
   std::uint32_t first_signature_ = 0xFFFFFFFFu;
   std::uint32_t last_signature_ = 0;
   bool needs_scan_ = false;

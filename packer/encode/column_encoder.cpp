@@ -45,7 +45,7 @@ std::uint64_t packed_size(std::size_t rows, unsigned bits) {
   return (std::uint64_t{rows} * bits + 7) / 8;
 }
 
-// Floats that are k / 2^fraction exactly, with |k| < 2^24; tells the smallest fraction, or nothing.
+// The smallest fraction such that every float is exactly k / 2^fraction with |k| < 2^24, if any.
 std::optional<unsigned> fraction_bits(std::span<const std::uint32_t> values) {
   constexpr unsigned kMost = 8;
   unsigned fraction = 0;
@@ -174,7 +174,7 @@ namespace {
 
 constexpr std::int32_t kFarIndex = 1 << 23;
 
-// The grid index of a coordinate, when the grid gives exactly that coordinate back.
+// The grid index of a coordinate, if the grid reproduces exactly that coordinate.
 std::optional<std::int32_t> index_on(float value, float cell, float origin) {
   const double estimate = (static_cast<double>(value) - origin) / cell;
   if (!(std::abs(estimate) < kFarIndex)) return std::nullopt;
@@ -185,12 +185,12 @@ std::optional<std::int32_t> index_on(float value, float cell, float origin) {
   return index;
 }
 
-// Indices of coordinates that come one after the other. Most are the one before or the next to it;
-// that is tried first where no two indices can share a coordinate.
+// Finds the indices of a sequence of coordinates. Most equal the previous index or the one after
+// it; these are tried first where no two indices can share a coordinate.
 class IndexFinder {
  public:
   IndexFinder(float cell, float origin) : cell_(cell), origin_(origin) {
-    constexpr float kExact = 1 << 20;  // so many cells away, a coordinate is exact to 1/8 cell
+    constexpr float kExact = 1 << 20;  // at this many cells a coordinate is exact to 1/8 cell
     limit_ = std::abs(origin) < cell * kExact ? cell * kExact : 0;
   }
 
@@ -228,8 +228,8 @@ std::vector<float> distinct_of(std::span<const float> cells, std::size_t axis) {
   return values;
 }
 
-// The grid's corner lies a whole number of cells below the smallest coordinate seen, give or take
-// roundings.
+// Searches for the grid's origin: it lies a whole number of cells below the smallest coordinate, up
+// to rounding.
 std::optional<float> find_origin(std::span<const float> distinct, float cell) {
   constexpr int kFarthest = 2048;
   constexpr int kUlps = 3;

@@ -21,8 +21,8 @@ struct EncodedColumn {
   Bytes bytes;
 };
 
-// The smallest of Constant, Packed, Scaled, Blocks and Raw that gives all 32 bits of every value
-// back.
+// Encodes by the smallest of Constant, Packed, Scaled, Blocks and Raw that restores all 32 bits of
+// every value.
 EncodedColumn encode_values(fb::Field field, std::span<const std::uint32_t> values);
 
 EncodedColumn encode_constant(fb::Field field, std::uint64_t value);
@@ -30,11 +30,13 @@ EncodedColumn encode_raw(fb::Field field, std::span<const std::byte> bytes,
                          std::uint32_t row_bytes);
 
 // Finds the origin of grids whose cells are float(index) * cell + origin, and remembers it for the
-// next grid: most of a database share one. One object a thread.
+// next grid, since most grids of a database share one.
+//
+// Threads: one object per thread.
 class LatticeEncoder {
  public:
-  // Cells as (x, y) float32 pairs. Nothing when they are not cells of such a grid in row-major
-  // order, or when the bitmap would be no smaller.
+  // Encodes cells, (x, y) float32 pairs. Nothing when they are not cells of such a grid in
+  // row-major order, or when the bitmap would not be smaller.
   std::optional<EncodedColumn> encode(std::span<const std::byte> cells, float cell_size);
 
  private:
@@ -42,7 +44,8 @@ class LatticeEncoder {
   std::optional<float> origin_y_;
 };
 
-// Places of rows among the rows of a scan, ascending; nothing when some row is not there in order.
+// The ascending indices of the rows among those of a scan; nothing when a row is missing or out of
+// order.
 std::optional<std::vector<std::uint32_t>> subset_of(std::span<const std::byte> rows,
                                                     std::span<const std::byte> scan,
                                                     std::size_t row_bytes);

@@ -42,7 +42,7 @@ void check_length(const SignatureRecord& record, const char* column, std::size_t
                            std::to_string(kMaxBlobBytes) + " there");
 }
 
-// Any fixed order will do: places are given as values come.
+// Any fixed order will do, since indices follow the order of insertion.
 struct ByLengthThenBits {
   bool operator()(const Bytes& a, const Bytes& b) const {
     if (a.size() != b.size()) return a.size() < b.size();
@@ -50,7 +50,7 @@ struct ByLengthThenBits {
   }
 };
 
-// Gives each distinct value of a run one place.
+// Gives each distinct value of a run one index.
 class Interned {
  public:
   std::uint32_t place_of(const Bytes& key) {
@@ -66,7 +66,7 @@ class Interned {
   std::vector<const Bytes*> in_order_;
 };
 
-// Matrices are told apart by their bits, so that NaN and -0 come back as they were.
+// Matrices are compared by their bits, so that NaN and -0 are restored exactly.
 Bytes bits_of(const std::vector<double>& matrix) {
   const auto bytes = std::as_bytes(std::span(matrix));
   return {bytes.begin(), bytes.end()};
@@ -120,7 +120,7 @@ std::vector<CoreRecord> core_records(SignatureRecord& record, std::uint32_t ordi
 std::size_t core_run(std::span<const CoreRecord> records, std::uint64_t capacity) {
   std::uint64_t size = kCoreFrameBytes;
   std::size_t count = 0;
-  // Distinct matrices and calibrations are stored once, so the bounds are taken with them shared.
+  // Equal matrices and calibrations are stored once, so the bound counts each only once.
   Interned informations;
   Interned calibrations;
   for (const CoreRecord& core : records) {

@@ -6,25 +6,22 @@
 #include <lz4hc.h>
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 
+#include "platform/base/failure.hpp"
 #include "platform/base/require.hpp"
 
 namespace zonepack::packer {
 namespace {
 
 constexpr int kCompressionLevel = 9;  // 12 saves 0.2 % for four times the time
-constexpr std::uint32_t kWorthDecoding =
-    64;  // LZ4 must save more than 1/64, else the chunk stays raw
+// LZ4 must save more than 1/64 of the decoded bytes, else the chunk stays raw.
+constexpr std::uint32_t kWorthDecoding = 64;
 constexpr std::uint64_t kWorthFilling = 1024;
 
 std::string message_of(const Error& error, const std::filesystem::path& folder) {
-  std::string text = folder.string() + ": cannot write a pack: " + to_string(error.code);
-  if (error.code == ErrorCode::kIo) {
-    text += " (" + std::string(std::strerror(static_cast<int>(error.detail))) + ")";
-  }
-  return text + "; check that the folder exists, is writable and has room";
+  return folder.string() + ": cannot write a pack: " + reason_text(error) +
+         "; check that the folder exists, is writable and has room";
 }
 
 AtomicFile open_part(const std::filesystem::path& folder) {
@@ -60,7 +57,7 @@ void PackWriter::add(SignatureRecord& record, float x, float y) {
   for (std::size_t run; (run = core_run(core_, kSlotBytes)) < core_.size();) emit_core(run);
 }
 
-// Adds waiting tables to the open chunk; true when it is full with more to come.
+// Adds waiting tables to the open chunk; true when the chunk is full and tables remain.
 bool PackWriter::fill(Queue& queue, std::uint64_t capacity) {
   while (queue.whole < queue.tables.size()) {
     const Pending& next = queue.tables[queue.whole];
@@ -142,7 +139,8 @@ void PackWriter::emit(fb::PayloadKind kind, const Bytes& decoded, std::uint32_t 
   }
 }
 
-// The ends of all kinds share slots: each chunk is cut to fill the room that the one before left.
+// The last chunks of all kinds share slots: each is cut to fill the room that the previous one
+// left.
 void PackWriter::finish_tails() {
   Placement placement;
   const auto place = [&](const fb::ChunkEntry& entry) {

@@ -15,7 +15,7 @@
 
 namespace zonepack::packer {
 
-// A finished pack, as the manifest tells of it.
+// A finished pack, as the manifest describes it.
 struct PackSummary {
   std::string file;  // ZONE-<16 hex digits of the digest>.zpk
   std::uint64_t bytes = 0;
@@ -28,21 +28,23 @@ struct PackSummary {
     std::uint32_t chunks = 0;
   };
   std::array<Payload, kPayloadKinds> payloads{};
-  std::vector<std::uint32_t> slots;            // by set of kinds packed, as in the manifest
-  std::vector<std::uint64_t> signature_bytes;  // decoded share of each signature in what is loaded
-                                               // by default, for splitting
+  std::vector<std::uint32_t> slots;  // by set of kinds packed, as in the manifest
+  // Each signature's share of the decoded bytes of the default payload, for splitting.
+  std::vector<std::uint64_t> signature_bytes;
 };
 
-// Writes one zone's pack as its signatures come, in order of id. Holds at most a slot or two of
-// rows of each payload kind beside the index. Same signatures, same bytes.
+// Writes one zone's pack while its signatures arrive, in order of id. The same signatures give the
+// same bytes.
+//
+// Memory: the index, and at most a slot or two of rows of each payload kind.
 class PackWriter {
  public:
   PackWriter(const std::filesystem::path& folder, std::string zone);
 
-  // `record` is consumed. x, y: where its base stands in the map, metres.
+  // Consumes `record`. x, y: position of its base in the map frame, metres.
   void add(SignatureRecord& record, float x, float y);
 
-  // Writes what is left, index and tail, and gives the file its name.
+  // Writes the remaining rows, the index and the tail, and gives the file its name.
   PackSummary finish(PayloadMask packed);
 
  private:
@@ -52,9 +54,9 @@ class PackWriter {
   };
   struct Queue {
     std::deque<Pending> tables;
-    BulkChunkBuilder chunk;  // the open chunk: `whole` tables from the front, and
-    std::size_t whole = 0;
-    std::uint32_t cut_rows = 0;  // some rows of the next one
+    BulkChunkBuilder chunk;      // the open chunk; holds ...
+    std::size_t whole = 0;       // ... so many whole tables from the front
+    std::uint32_t cut_rows = 0;  // ... and so many rows of the next one
   };
 
   bool fill(Queue& queue, std::uint64_t capacity);

@@ -10,7 +10,7 @@ namespace {
 constexpr std::int32_t kFloat = 5;  // OpenCV depth
 constexpr std::uint32_t kMaxChannels = 10;
 
-// A column's rows as separate channels, when that is smaller than the rows as they are.
+// The rows of a column as separate channels, if that is smaller than the rows themselves.
 std::optional<std::vector<EncodedColumn>> by_channel(std::span<const std::byte> rows,
                                                      std::uint32_t row_bytes) {
   const std::uint32_t channels = row_bytes / 4;
@@ -46,7 +46,7 @@ SourceTable bytes_table(std::uint32_t signature, fb::Part part, Bytes bytes) {
   return table;
 }
 
-// A matrix of float32 rows keeps its points together; any other is a string of bytes.
+// A matrix of float32 points becomes one row per point; any other matrix is a string of bytes.
 SourceTable matrix_table(std::uint32_t signature, fb::Part part, Matrix matrix, bool points) {
   const EncodedColumn shape = shape_of(matrix);
   const std::uint32_t row_bytes = channels_of(matrix) * 4;

@@ -11,17 +11,17 @@
 
 namespace zonepack::packer {
 
-// Rows of equal length that a table's column holds before encoding.
+// A column before encoding: rows of equal length.
 struct SourceColumn {
   fb::Field field{};
   std::uint32_t row_bytes = 0;
-  bool values = false;  // 32-bit values, to be kept in their smallest form; else rows of bytes
+  bool values = false;  // 32-bit values, stored in their smallest form; else rows of bytes
   Bytes data;
 };
 
-// One table of one signature on its way into chunks, whole or in pieces of rows.
+// One table of one signature, to be stored in chunks whole or in pieces of rows.
 struct SourceTable {
-  std::uint32_t signature = 0;  // ordinal in the zone
+  std::uint32_t signature = 0;  // ordinal within the zone
   fb::Part part{};
   std::uint16_t ordinal = 0;
   std::uint32_t rows = 0;
@@ -35,7 +35,7 @@ struct SourceTable {
                                     LatticeEncoder& lattice) const;
 };
 
-// All tables of a signature. `record` gives up its large members.
+// All tables of a signature. Moves the large members out of `record`.
 std::vector<SourceTable> tables_of(SignatureRecord& record, std::uint32_t ordinal);
 
 }  // namespace zonepack::packer

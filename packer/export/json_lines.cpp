@@ -4,32 +4,12 @@
 #include <charconv>
 #include <cmath>
 
+#include "platform/base/utf8.hpp"
+
 namespace zonepack::packer {
 namespace {
 
 constexpr std::size_t kLongestNumber = 32;
-
-// How many bytes from `at` are one character of well-formed UTF-8; 0 for none (RFC 3629).
-std::size_t utf8_length(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) {
-    return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0u;
-  };
-  const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0u) == 0x80u; };
-  const unsigned lead = byte(0);
-  if (lead < 0x80) return 1;
-  if (lead >= 0xC2 && lead <= 0xDF) return follows(1) ? 2 : 0;
-  if (lead >= 0xE0 && lead <= 0xEF) {
-    const bool overlong = lead == 0xE0 && byte(1) < 0xA0;
-    const bool surrogate = lead == 0xED && byte(1) > 0x9F;
-    return follows(1) && follows(2) && !overlong && !surrogate ? 3 : 0;
-  }
-  if (lead >= 0xF0 && lead <= 0xF4) {
-    const bool overlong = lead == 0xF0 && byte(1) < 0x90;
-    const bool too_large = lead == 0xF4 && byte(1) > 0x8F;
-    return follows(1) && follows(2) && follows(3) && !overlong && !too_large ? 4 : 0;
-  }
-  return 0;
-}
 
 }  // namespace
 
@@ -90,7 +70,7 @@ void JsonLines::quoted(std::string_view value) {
   constexpr char kHex[] = "0123456789abcdef";
   waiting_ += '"';
   for (std::size_t at = 0; at < value.size();) {
-    const std::size_t length = utf8_length(value, at);
+    const std::size_t length = utf8_length(value.substr(at));
     const char c = value[at];
     if (length == 0) {
       waiting_ += "\\ufffd";

@@ -10,12 +10,14 @@
 
 namespace zonepack::packer {
 
-// Writes JSON as it comes, one object a line, in pieces of about a MiB.
+// Streams JSON, one object per line, in pieces of about a MiB.
 //
-// Numbers read back exactly: a double prints in its shortest form that gives all its bits back
-// (minus zero as -0.0), a float as the double of the same value; NaN and infinities as the strings
-// "nan", "inf" and "-inf". Text that is not UTF-8 has U+FFFD for each byte that is not.
-// Memory: a piece, and the longest single value. Threads: one.
+// Numbers read back exactly: a double prints in the shortest form that restores all its bits (minus
+// zero as -0.0), a float as the double of the same value; NaN and infinities as the strings "nan",
+// "inf" and "-inf". U+FFFD replaces each byte of text that is not UTF-8.
+//
+// Memory: a piece, and the longest single value.
+// Threads: one.
 class JsonLines {
  public:
   using Sink = std::function<void(std::string_view)>;
@@ -40,7 +42,7 @@ class JsonLines {
   }
 
   void end_line();
-  // Hands over what waits; to be called at the end.
+  // Passes on what is buffered; call it at the end.
   void flush();
 
  private:
@@ -52,7 +54,7 @@ class JsonLines {
   static constexpr std::size_t kPieceBytes = 1 << 20;
   Sink sink_;
   std::string waiting_;
-  bool first_ = true;  // of its object, array, or after its key
+  bool first_ = true;  // nothing precedes it in its object or array, or it follows its key
 };
 
 }  // namespace zonepack::packer

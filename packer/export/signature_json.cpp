@@ -120,7 +120,7 @@ class SignatureWriter {
     some ? json_.base64(f.descriptors) : json_.null();
   }
 
-  // The database's NULL is a NaN here.
+  // A NaN stands for NULL in the database.
   void point(float x, float y, float z) {
     if (std::isnan(x) && std::isnan(y) && std::isnan(z)) return json_.null();
     json_.begin_array();

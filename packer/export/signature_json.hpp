@@ -9,8 +9,9 @@
 
 namespace zonepack::packer {
 
-// Writes one signature as one line: the keys that README lists, in that order. What the signature
-// has not, or what was not packed, is null; a list whose payload was packed may be empty.
+// Writes one signature as one line: the keys that the help of `zonepack export` lists, in that
+// order. What the signature does not have, or what was not packed, is null; a list whose payload
+// was packed may be empty.
 void write_signature(JsonLines& json, std::string_view zone, const SignatureRecord& record,
                      PayloadMask packed);
 

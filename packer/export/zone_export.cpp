@@ -46,7 +46,7 @@ void export_zone(const MapReader& map, const fb::Zone& zone, JsonLines& json,
         write_signature(json, zone.name()->string_view(), decode_record(decoded->view(), i),
                         map.manifest().payload_mask());
       } catch (const std::runtime_error& error) {
-        throw std::runtime_error(path + ": " + error.what() + "; build the map anew");
+        throw std::runtime_error(path + ": " + error.what() + "; build the map again");
       }
     }
   }

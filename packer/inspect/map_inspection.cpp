@@ -6,6 +6,7 @@
 
 #include "packer/console/command_line.hpp"
 #include "packer/console/text_table.hpp"
+#include "packer/decode/map_reader.hpp"
 #include "packer/verify/problem.hpp"
 #include "platform/storage.hpp"
 #include "runtime/pack_format/file/accounting.hpp"
@@ -30,15 +31,10 @@ struct ZoneBytes {
 };
 
 ZoneBytes bytes_of(const fb::Manifest& manifest, const fb::Zone& zone) {
-  ZoneBytes bytes;
-  bytes.charged = zone_slots(manifest, zone, kDefaultPayload) * kSlotBytes;
-  const PayloadMask mask = payload_closure(kDefaultPayload, zone.grid_needs_scan());
-  for (const fb::PayloadBytes* payload : *zone.payloads()) {
-    if ((mask & mask_of(static_cast<fb::PayloadKind>(payload->kind()))) == 0) continue;
-    bytes.stored += payload->stored();
-    bytes.decoded += payload->decoded();
-  }
-  return bytes;
+  const ChunkBytes chunks = chunk_bytes(zone, kDefaultPayload);
+  return {.charged = zone_slots(manifest, zone, kDefaultPayload) * kSlotBytes,
+          .stored = chunks.stored,
+          .decoded = chunks.decoded};
 }
 
 Json zone_json(const fb::Manifest& manifest, const fb::Zone& zone) {
@@ -65,8 +61,7 @@ Json zone_json(const fb::Manifest& manifest, const fb::Zone& zone) {
   json["grid_needs_scan"] = zone.grid_needs_scan();
   json["payloads"] = Json::object();
   for (const fb::PayloadBytes* payload : *zone.payloads()) {
-    const char* const kind = zonepack::to_string(static_cast<fb::PayloadKind>(payload->kind()));
-    json["payloads"][kind == nullptr ? std::to_string(payload->kind()) : kind] = {
+    json["payloads"][kind_text(static_cast<fb::PayloadKind>(payload->kind()))] = {
         {"chunks", payload->chunks()},
         {"decoded_bytes", payload->decoded()},
         {"stored_bytes", payload->stored()}};
@@ -133,18 +128,9 @@ void print(const fb::Manifest& manifest, const std::string& folder, const std::s
 }  // namespace
 
 nlohmann::ordered_json inspect_map(const std::string& folder, std::ostream& out) {
-  const std::string path = folder + "/" + std::string(kManifestName);
-  const Result<std::vector<std::byte>> file = read_file(path, kMaxManifestFileBytes);
-  const Result<const fb::Manifest*> checked =
-      file ? check_manifest(*file) : Result<const fb::Manifest*>(file.error());
-  if (!checked) {
-    const bool missing = checked.error().code == ErrorCode::kNotFound;
-    throw std::runtime_error(path + ": " + to_text(checked.error()) +
-                             (missing ? "; is this a map that 'zonepack build' wrote?"
-                                      : "; 'zonepack verify' tells where the map is damaged"));
-  }
-  const fb::Manifest& manifest = **checked;
-  const std::string version = to_hex(manifest_digest(*file));
+  const MapReader map(folder);
+  const fb::Manifest& manifest = map.manifest();
+  const std::string version = to_hex(manifest_digest(map.manifest_file()));
   Json json;
   json["map"] = folder;
   json["lineage"] = hex_of(*manifest.lineage());
@@ -152,7 +138,7 @@ nlohmann::ordered_json inspect_map(const std::string& folder, std::ostream& out)
   json["frame"] = manifest.frame()->str();
   json["slot_bytes"] = manifest.slot_bytes();
   json["payload"] = payload_text(manifest.payload_mask());
-  json["manifest_bytes"] = file->size();
+  json["manifest_bytes"] = map.manifest_file().size();
   json["signed"] = manifest.signature() != nullptr;
   json["zones"] = Json::array();
   for (const fb::Zone* zone : *manifest.zones())

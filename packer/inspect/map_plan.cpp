@@ -8,15 +8,6 @@
 namespace zonepack::packer {
 namespace {
 
-ByteCount stored_bytes(const fb::Zone& zone, PayloadMask payload) {
-  const PayloadMask loaded = payload_closure(payload, zone.grid_needs_scan());
-  ByteCount sum = 0;
-  for (const fb::PayloadBytes* bytes : *zone.payloads()) {
-    if ((loaded >> bytes->kind() & 1) != 0) sum += bytes->stored();
-  }
-  return sum;
-}
-
 // Each pair once, however many portals join it.
 std::set<ZonePair> pairs_of(const MapCosts& costs) {
   std::set<ZonePair> pairs;
@@ -31,7 +22,7 @@ BudgetPlan plan_budget(const MapCosts& costs, const MapPlan& plan, ByteCount byt
   budget.slots = slots_within(bytes, plan.fixed_bytes);
   std::uint64_t pinned = 0;
   std::vector<std::uint64_t> others;
-  for (const PlanZone& zone : plan.zones) {
+  for (const ZoneCost& zone : plan.zones) {
     if (zone.pinned) {
       pinned += zone.slots;
     } else {
@@ -79,7 +70,7 @@ MapPlan plan_map(const fb::Manifest& manifest, PayloadMask payload, std::span<co
     const std::uint32_t slots = costs.zone_slots[id];
     const bool is_pinned = std::find(pinned.begin(), pinned.end(), id) != pinned.end();
     plan.zones.push_back({zone.name()->str(), zone.signatures(), slots, slots * kSlotBytes,
-                          stored_bytes(zone, payload), is_pinned});
+                          chunk_bytes(zone, payload).stored, is_pinned});
     largest = std::max<std::uint64_t>(largest, slots);
   }
   plan.live_change_bytes = plan.smallest.bytes + charged_with(plan.fixed_bytes, largest);

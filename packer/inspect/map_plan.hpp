@@ -10,7 +10,7 @@
 
 namespace zonepack::packer {
 
-struct PlanZone {
+struct ZoneCost {
   std::string name;
   std::uint32_t signatures = 0;
   std::uint32_t slots = 0;
@@ -19,31 +19,31 @@ struct PlanZone {
   bool pinned = false;
 };
 
-// What one budget allows, with the pinned zones always held.
+// What one budget allows while the pinned zones are always held.
 struct BudgetPlan {
   ByteCount bytes = 0;
   bool suffices = false;                     // not below the smallest budget
-  std::uint64_t slots = 0;                   // that it pays for
-  std::vector<ZoneId> zones_without_room;    // alone beside the pinned ones
-  std::vector<ZonePair> pairs_without_room;  // of neighbours, each of which would fit alone
-  std::size_t largest_zones_at_once = 0;     // so many zones fit together, whichever they are
+  std::uint64_t slots = 0;                   // that the budget covers
+  std::vector<ZoneId> zones_without_room;    // even alone besides the pinned ones
+  std::vector<ZonePair> pairs_without_room;  // neighbours of which each fits alone
+  std::size_t largest_zones_at_once = 0;     // so many fit together, whichever they are
   bool whole_map = false;                    // nothing is ever evicted
 };
 
-// What a map costs, by the runtime's own accounting (runtime/pack_format/file/accounting.hpp):
+// What a map costs by the runtime's own accounting (runtime/pack_format/file/accounting.hpp):
 //
 //   smallest    = fixed + (pinned + largest pair of neighbours) x (slot + its tables)
 //   live change = smallest + fixed + largest zone x (slot + its tables)
 //
-// fixed: tables, manifest, zone graph, read buffers. While a map changes, the tables of both stand,
-// and the robot's zone of the new map is loaded beside the pair and the pins of the old one; the
-// new map is taken to be as large as this one.
+// fixed: tables, manifest, zone graph, read buffers. While a map changes, the tables of both exist,
+// and the robot's zone of the new map is loaded besides the pair and the pins of the old one. The
+// new map is assumed to be as large as this one.
 struct MapPlan {
   PayloadMask payload = 0;
   ByteCount fixed_bytes = 0;
   SmallestBudget smallest;
   ByteCount live_change_bytes = 0;
-  std::vector<PlanZone> zones;  // by ZoneId
+  std::vector<ZoneCost> zones;  // by ZoneId
   std::optional<BudgetPlan> budget;
 };
 

@@ -8,6 +8,7 @@
 #include "packer/console/command_line.hpp"
 #include "packer/console/text_table.hpp"
 #include "packer/verify/problem.hpp"
+#include "platform/base/failure.hpp"
 #include "runtime/pack_format/file/pack_reader.hpp"
 
 namespace zonepack::packer {
@@ -15,16 +16,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string kind_text(fb::PayloadKind kind) {
-  const char* const name = zonepack::to_string(kind);
-  return name == nullptr ? std::to_string(static_cast<int>(kind)) : name;
-}
-
 const char* codec_text(fb::ChunkCodec codec) {
   return codec == fb::ChunkCodec::Lz4 ? "lz4" : "raw";
 }
 
-// Where the chunks of the default payload go; nothing for the others.
+// Where chunks of the default payload are placed; nothing for other chunks.
 std::vector<std::optional<Placement::Place>> places_of(const fb::PackIndex& index) {
   const PayloadMask mask = payload_closure(kDefaultPayload, index.grid_needs_scan());
   Placement placement;
@@ -71,7 +67,7 @@ void print(const PackReader& pack, const std::string& path, std::ostream& out) {
   out << path << ": zone " << index.zone()->str() << ", " << index.signatures() << " signatures, "
       << index.features() << " features, " << pack.file().size() << " bytes\ndigest "
       << to_hex(pack.tail().digest)
-      << (index.grid_needs_scan() ? "\ngrid cells are told as points of the scan" : "") << "\n\n";
+      << (index.grid_needs_scan() ? "\ngrid cells are stored as points of the scan" : "") << "\n\n";
   TextTable kinds({"kind", "chunks", "decoded", "stored", "ratio"});
   const auto sums = sums_of(index);
   for (std::size_t k = 0; k < sums.size(); ++k) {
@@ -105,8 +101,8 @@ void print(const PackReader& pack, const std::string& path, std::ostream& out) {
 nlohmann::ordered_json inspect_pack(const std::string& path, std::ostream& out) {
   const Result<PackReader> pack = PackReader::open(path);
   if (!pack) {
-    throw std::runtime_error(path + ": " + to_text(pack.error()) +
-                             "; 'zonepack verify' tells where the pack is damaged");
+    throw std::runtime_error(path + ": " + reason_text(pack.error()) +
+                             "; 'zonepack verify' reports where the pack is damaged");
   }
   const fb::PackIndex& index = pack->index();
   Json json;

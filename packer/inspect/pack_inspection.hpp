@@ -7,8 +7,8 @@
 
 namespace zonepack::packer {
 
-// Prints what the index of a pack says, as a table of chunks with their places in slots when the
-// default payload is loaded, and returns all of it. Throws std::runtime_error when the index cannot
+// Prints the index of a pack as a table of chunks with their places in slots when the default
+// payload is loaded, and returns all of it as JSON. Throws std::runtime_error when the index cannot
 // be read.
 nlohmann::ordered_json inspect_pack(const std::string& path, std::ostream& out);
 

@@ -8,7 +8,7 @@
 
 #include "packer/sources/map_outline.hpp"
 
-// A floor plan of square cells, and the files that hold one.
+// An occupancy grid as an image, and its file formats.
 namespace zonepack::packer {
 
 enum class Cell : std::uint8_t { kUnknown, kFree, kOccupied };
@@ -23,10 +23,10 @@ struct MapImage {
   std::size_t count(Cell cell) const;
 };
 
-// A float32 as the decimal number that was meant: 0.05f is 0.05, not 0.0500000007.
+// The shortest decimal number that gives this float32: 0.05f is 0.05, not 0.0500000007.
 double decimal_of(float value);
 
-// The grid that RTAB-Map assembled itself, as an image.
+// The grid that RTAB-Map assembled, as an image.
 MapImage image_of(const OptimisedMap& map);
 
 // For ROS map_server: a binary PGM (row 0 at the top: 0 occupied, 254 free, 205 unknown), its YAML

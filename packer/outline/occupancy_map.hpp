@@ -12,23 +12,25 @@
 #include "packer/outline/map_image.hpp"
 #include "packer/record/record.hpp"
 
-// A floor plan put together from what the robot's sensors saw.
+// An occupancy grid assembled from the local grids of the signatures.
 namespace zonepack::packer {
 
-// Gathers local grids. A cell that a signature saw empty or as ground speaks for free, one with an
-// obstacle for occupied; the sum decides, with RTAB-Map's own weights (hit 0.7, miss 0.4, limits
-// 0.12 and 0.97, occupied from 0.5). Empty cells are looked up from the map's cells, so that
-// turning a grid leaves no pinholes. Memory grows with the area seen, not with its extent.
+// Adds up local grids. A cell seen as empty or ground counts as a vote for free, one with an
+// obstacle as a vote for occupied; the sum decides, with RTAB-Map's own weights (hit 0.7, miss 0.4,
+// limits 0.12 and 0.97, occupied from 0.5). Free cells are looked up from the map's cells, so that
+// a rotated grid leaves no pinholes.
+//
+// Memory: grows with the area seen, not with its extent.
 class OccupancyMap {
  public:
   explicit OccupancyMap(double resolution_m);
 
-  // `grid` in the base frame, `T_map_base` optimised. Cells that are no numbers, or beyond 100 m
-  // from the robot, are left out.
+  // `grid` in the base frame, `T_map_base` optimised. Skips cells that are not numbers or are more
+  // than 100 m from the robot.
   void add(const Grid& grid, const Transform& T_map_base);
 
-  // Cut to what was seen, with a margin of 0.5 m. Empty when nothing was. Throws std::runtime_error
-  // when it would have more than 2^29 cells: some signature stands far off the map.
+  // The area seen, with a margin of 0.5 m; empty when nothing was seen. Throws std::runtime_error
+  // when it would have more than 2^29 cells: some signature is far off the map.
   MapImage image() const;
 
  private:

@@ -28,7 +28,7 @@ bool jumps(const NodeOutline& a, const NodeOutline& b) {
   return std::abs(moved - odometry) > kJump_m + kJumpShare * odometry;
 }
 
-// Prints with few digits: `per_unit` of 100 keeps hundredths.
+// Keeps few digits: `per_unit` of 100 keeps hundredths.
 double rounded(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
 ordered_json position(const Transform& pose) {

@@ -7,21 +7,21 @@
 
 #include "packer/sources/map_outline.hpp"
 
-// Where the robot was when it made the map, for a map editor (QGIS).
+// Where the robot was while it recorded the map, for a map editor (QGIS).
 //
-// The files are in metres of the map frame. GeoJSON knows no local frames, so they name EPSG:3857,
+// The files are in metres of the map frame. GeoJSON has no local frames, so they declare EPSG:3857,
 // a plane in metres around (0, 0): QGIS then measures and snaps in metres. Never reproject them.
 namespace zonepack::packer {
 
-// Nodes that follow each other in one session without a jump; at least two.
+// Consecutive nodes of one session without a jump between them; at least two.
 struct Path {
   std::int32_t map_id = 0;
   std::vector<const NodeOutline*> nodes;
 };
 
-// By session, in order of stamp (then id), of the nodes that have an optimised pose. A path ends
-// where two poses jump: where they are more than 1 m and 10 % further apart or nearer together than
-// odometry says or, without odometry, more than 10 m apart.
+// The paths of all sessions, over the nodes that have an optimised pose, in order of stamp (then
+// id). A path ends where two poses jump: where their distance differs from that of odometry by more
+// than 1 m plus 10 % or, without odometry, exceeds 10 m.
 std::vector<Path> paths_of(const MapOutline& outline);
 
 double yaw_rad(const Transform& transform);

@@ -18,7 +18,7 @@ using Bytes = std::vector<std::byte>;
 // Rigid transform, row-major 3x4: rotation and translation of the child in the parent.
 using Transform = std::array<float, 12>;
 
-// A matrix blob once unzipped: rows x cols elements of an OpenCV type (depth = type & 7, channels =
+// An unzipped matrix blob: rows x cols elements of an OpenCV type (depth = type & 7, channels =
 // (type >> 3) + 1), row-major, no padding. data.size() == rows * cols * element size, always.
 struct Matrix {
   std::int32_t rows = 0;

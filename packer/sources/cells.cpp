@@ -8,6 +8,8 @@
 #include <cstring>
 #include <limits>
 
+#include "platform/base/utf8.hpp"
+
 namespace zonepack::packer {
 namespace {
 
@@ -32,31 +34,9 @@ std::string shortest(double value) {
   return {text.data(), end};
 }
 
-bool is_utf8(std::string_view text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    const std::size_t more = lead < 0x80   ? 0
-                             : lead < 0xc2 ? 9
-                             : lead < 0xe0 ? 1
-                             : lead < 0xf0 ? 2
-                                           : 3;
-    if (lead > 0xf4 || more == 9 || i + more >= text.size()) return false;
-    std::uint32_t point = more == 0 ? lead : lead & (0x3fu >> more);
-    for (std::size_t k = 1; k <= more; ++k) {
-      const auto next = static_cast<unsigned char>(text[i + k]);
-      if ((next & 0xc0) != 0x80) return false;
-      point = (point << 6) | (next & 0x3f);
-    }
-    const bool overlong = (more == 2 && point < 0x800) || (more == 3 && point < 0x10000);
-    if (overlong || point > 0x10ffff || (point >= 0xd800 && point <= 0xdfff)) return false;
-    i += more + 1;
-  }
-  return true;
-}
-
 }  // namespace
 
-std::int32_t int32_cell(const SqliteQuery& row, int column, const Place& place) {
+std::int32_t int32_cell(const SqliteQuery& row, int column, const CellPlace& place) {
   const int type = row.type(column);
   if (type != SQLITE_INTEGER) {
     place.damaged(std::string("expected an integer, found ") + storage_class(type));
@@ -69,12 +49,12 @@ std::int32_t int32_cell(const SqliteQuery& row, int column, const Place& place) 
   return static_cast<std::int32_t>(value);
 }
 
-std::int32_t int32_cell(const SqliteQuery& row, int column, const Place& place,
+std::int32_t int32_cell(const SqliteQuery& row, int column, const CellPlace& place,
                         std::int32_t if_null) {
   return row.is_null(column) ? if_null : int32_cell(row, column, place);
 }
 
-float float_cell(const SqliteQuery& row, int column, const Place& place) {
+float float_cell(const SqliteQuery& row, int column, const CellPlace& place) {
   const int type = row.type(column);
   if (type != SQLITE_FLOAT && type != SQLITE_INTEGER) {
     place.damaged(std::string("expected a number, found ") + storage_class(type));
@@ -86,11 +66,11 @@ float float_cell(const SqliteQuery& row, int column, const Place& place) {
   return static_cast<float>(value);
 }
 
-float float_cell(const SqliteQuery& row, int column, const Place& place, float if_null) {
+float float_cell(const SqliteQuery& row, int column, const CellPlace& place, float if_null) {
   return row.is_null(column) ? if_null : float_cell(row, column, place);
 }
 
-double finite_cell(const SqliteQuery& row, int column, const Place& place) {
+double finite_cell(const SqliteQuery& row, int column, const CellPlace& place) {
   const int type = row.type(column);
   if (type == SQLITE_NULL) return 0.0;
   if (type != SQLITE_FLOAT && type != SQLITE_INTEGER) {
@@ -101,7 +81,7 @@ double finite_cell(const SqliteQuery& row, int column, const Place& place) {
   return value;
 }
 
-std::span<const std::byte> blob_cell(const SqliteQuery& row, int column, const Place& place) {
+std::span<const std::byte> blob_cell(const SqliteQuery& row, int column, const CellPlace& place) {
   const int type = row.type(column);
   if (type == SQLITE_NULL) return {};
   if (type != SQLITE_BLOB) {
@@ -114,7 +94,7 @@ std::span<const std::byte> blob_cell(const SqliteQuery& row, int column, const P
   return nothing ? std::span<const std::byte>() : bytes;
 }
 
-std::string text_cell(const SqliteQuery& row, int column, const Place& place) {
+std::string text_cell(const SqliteQuery& row, int column, const CellPlace& place) {
   const int type = row.type(column);
   if (type == SQLITE_NULL) return {};
   if (type != SQLITE_TEXT) {
@@ -125,11 +105,12 @@ std::string text_cell(const SqliteQuery& row, int column, const Place& place) {
   return text;
 }
 
-std::optional<Transform> transform_cell(const SqliteQuery& row, int column, const Place& place) {
+std::optional<Transform> transform_cell(const SqliteQuery& row, int column,
+                                        const CellPlace& place) {
   return transform_from(blob_cell(row, column, place), place);
 }
 
-std::optional<Transform> transform_from(std::span<const std::byte> bytes, const Place& place) {
+std::optional<Transform> transform_from(std::span<const std::byte> bytes, const CellPlace& place) {
   expect_elements(bytes, 12, sizeof(float), "float32", place);
   if (bytes.empty()) return std::nullopt;
   Transform transform;
@@ -144,7 +125,7 @@ std::optional<Transform> transform_from(std::span<const std::byte> bytes, const 
 }
 
 void expect_elements(std::span<const std::byte> bytes, std::size_t count, std::size_t element,
-                     const char* element_name, const Place& place) {
+                     const char* element_name, const CellPlace& place) {
   if (bytes.empty() || bytes.size() == count * element) return;
   place.damaged("expected " + std::to_string(count * element) + " bytes (" + std::to_string(count) +
                 " " + element_name + "), found " + std::to_string(bytes.size()));

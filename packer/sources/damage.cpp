@@ -16,7 +16,7 @@ std::string message(const std::string& file, const Damage& damage) {
 DamagedSignature::DamagedSignature(const std::string& file, Damage damage)
     : std::runtime_error(message(file, damage)), damage_(std::move(damage)) {}
 
-void Place::damaged(const std::string& problem) const {
+void CellPlace::damaged(const std::string& problem) const {
   if (signature == 0) throw std::runtime_error(*file + ": " + column + ": " + problem);
   throw DamagedSignature(*file, Damage{signature, column, problem});
 }

@@ -14,8 +14,8 @@ struct Damage {
   std::string problem;  // "expected 76 bytes (19 float32), found 40"
 };
 
-// One signature cannot be read as it stands; every other one can. The message names the file, the
-// signature, the column and what was expected, ready to be shown.
+// One signature cannot be read; every other one can. The message is complete: it names the file,
+// the signature, the column and what was expected.
 class DamagedSignature : public std::runtime_error {
  public:
   DamagedSignature(const std::string& file, Damage damage);
@@ -25,13 +25,15 @@ class DamagedSignature : public std::runtime_error {
   Damage damage_;
 };
 
-// Where a value stands, so that whoever parses it can say so. Cheap to copy; refers to `file`.
-struct Place {
+// Where a value is stored, for the messages of its parsers. Cheap to copy.
+//
+// Ownership: refers to `file`.
+struct CellPlace {
   const std::string* file = nullptr;
   std::int32_t signature = 0;  // 0: not inside a signature (Admin, Info)
   const char* column = "";
 
-  Place at(const char* other_column) const noexcept { return {file, signature, other_column}; }
+  CellPlace at(const char* other_column) const noexcept { return {file, signature, other_column}; }
 
   // Throws DamagedSignature, or std::runtime_error where no signature is to blame.
   [[noreturn]] void damaged(const std::string& problem) const;

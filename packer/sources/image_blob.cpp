@@ -28,14 +28,14 @@ bool is_inverse_depth(std::string_view bytes) {
 
 }  // namespace
 
-void check_image(std::span<const std::byte> bytes, const Place& place) {
+void check_image(std::span<const std::byte> bytes, const CellPlace& place) {
   const std::string_view image = text(bytes);
   if (image.empty() || image.starts_with(kJpeg) || image.starts_with(kPng)) return;
   place.damaged("expected a JPEG or PNG image, found " + std::to_string(bytes.size()) +
                 " bytes of another kind");
 }
 
-void check_depth(std::span<const std::byte> bytes, const Place& place) {
+void check_depth(std::span<const std::byte> bytes, const CellPlace& place) {
   const std::string_view image = text(bytes);
   if (image.empty() || is_depth(image) || image.starts_with(kJpeg) || is_inverse_depth(image)) {
     return;

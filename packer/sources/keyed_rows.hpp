@@ -9,12 +9,14 @@
 
 namespace zonepack::packer {
 
-// The rows of a table that belong to one key, in the order of the table, for any key in turn.
-// Uses the table's index on the key. Where the database has none, one pass over the table notes
-// which stretches of it belong to which key (24 bytes a stretch), so that no key costs a full scan.
+// The rows of a table that belong to one key, in table order, for one key after the other. Uses the
+// table's index on the key. Where the database has none, one pass over the table records which
+// stretches of it belong to which key, so that no key costs a full scan.
+//
+// Memory: without an index, 24 bytes per stretch.
 class KeyedRows {
  public:
-  // `columns` is a SELECT list over `table`; `key` the integer column that names the owner.
+  // `columns`: a SELECT list over `table`; `key`: the integer column that names the owner.
   KeyedRows(const SqliteFile& file, const std::string& columns, const std::string& table,
             const std::string& key);
 

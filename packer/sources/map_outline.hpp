@@ -13,7 +13,7 @@
 
 namespace zonepack::packer {
 
-// What is known of one map node before its payloads are read.
+// What is known about a map node before its payloads are read.
 struct NodeOutline {
   std::int32_t id = 0;
   std::int32_t map_id = 0;  // the session that recorded it: the layer
@@ -25,7 +25,7 @@ struct NodeOutline {
   bool damaged = false;                    // its Damage is in MapOutline::damages
 };
 
-// The occupancy grid that RTAB-Map assembled itself. Row 0 is at y_min; cells are -1 unknown, 0
+// The occupancy grid that RTAB-Map assembled. Row 0 is at y_min; cells are -1 unknown, 0
 // free, 100 occupied, int8.
 struct OptimisedMap {
   Matrix cells;
@@ -33,12 +33,14 @@ struct OptimisedMap {
   float resolution = 0;        // metres; 0 when the database does not say (before 0.17)
 };
 
-// Everything of a source database that is not the payload of one signature. About 200 bytes a node.
+// Everything in a source database except the payloads of signatures.
+//
+// Memory: about 200 bytes per node.
 struct MapOutline {
   std::string schema_version;         // "0.23.8"
   std::vector<NodeOutline> nodes;     // ascending id, without deleted ones
   std::vector<Damage> damages;        // nodes whose own row or optimised pose is damaged
-  std::vector<std::string> warnings;  // worth telling the user, complete sentences
+  std::vector<std::string> warnings;  // for the user, complete sentences
 
   std::size_t deleted_nodes = 0;       // weight -9, dropped
   bool has_optimised_poses = false;    // whether the database holds any
@@ -50,7 +52,7 @@ struct MapOutline {
   std::string parameters;  // "Key:value;Key:value", as RTAB-Map last saved them
   std::optional<OptimisedMap> optimised_map;
 
-  // For the size report, over the nodes above: what the database itself spends.
+  // For the size report: what the database itself spends on the nodes above.
   std::uint64_t feature_count = 0;
   std::uint64_t scan_bytes = 0;  // zlib blobs as stored
   std::uint64_t grid_bytes = 0;  // ground, obstacle and empty cells

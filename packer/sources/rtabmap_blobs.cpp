@@ -30,7 +30,7 @@ std::array<float, N> floats(std::span<const std::byte> bytes) {
   return values;
 }
 
-std::int32_t scan_format(float stored, const Place& place) {
+std::int32_t scan_format(float stored, const CellPlace& place) {
   if (!(stored >= 0 && stored < kScanChannels.size()) || stored != std::floor(stored)) {
     place.damaged("expected a scan format from 0 to 12, found " + std::to_string(stored));
   }
@@ -40,7 +40,8 @@ std::int32_t scan_format(float stored, const Place& place) {
 // Reads a calibration from its front to its end.
 class Calibration {
  public:
-  Calibration(std::span<const std::byte> bytes, const Place& place) : rest_(bytes), place_(place) {}
+  Calibration(std::span<const std::byte> bytes, const CellPlace& place)
+      : rest_(bytes), place_(place) {}
 
   bool empty() const { return rest_.empty(); }
 
@@ -120,7 +121,7 @@ class Calibration {
   }
 
   std::span<const std::byte> rest_;
-  const Place& place_;
+  const CellPlace& place_;
 };
 
 }  // namespace
@@ -130,7 +131,7 @@ std::uint32_t scan_channels(std::int32_t format) noexcept {
   return kScanChannels[static_cast<std::size_t>(format)];
 }
 
-void parse_scan_info(std::span<const std::byte> info, SchemaVersion version, const Place& place,
+void parse_scan_info(std::span<const std::byte> info, SchemaVersion version, const CellPlace& place,
                      Scan& scan) {
   if (info.empty()) return;
   std::size_t fields = 7;
@@ -157,7 +158,7 @@ void parse_scan_info(std::span<const std::byte> info, SchemaVersion version, con
   if (fields == 3) scan.format = scan_format(floats<3>(info)[2], place);
 }
 
-void check_scan(const Scan& scan, const Place& place) {
+void check_scan(const Scan& scan, const CellPlace& place) {
   const std::uint32_t found = float_channels(scan.data);
   const std::uint32_t expected = scan_channels(scan.format);
   const bool right =
@@ -170,14 +171,14 @@ void check_scan(const Scan& scan, const Place& place) {
                 ", found " + describe_type(scan.data.type));
 }
 
-void check_grid_cells(const Matrix& cells, const Place& place) {
+void check_grid_cells(const Matrix& cells, const CellPlace& place) {
   const std::uint32_t found = float_channels(cells);
   if (found == 2 || found == 3 || found == 4 || found == 6) return;
   place.damaged("expected cells of 2, 3, 4 or 6 x float32, found " + describe_type(cells.type));
 }
 
 void check_calibration(std::span<const std::byte> bytes, SchemaVersion version,
-                       const Place& place) {
+                       const CellPlace& place) {
   if (version < kNewLayouts && bytes.size() % sizeof(float) == 0) {
     const std::size_t per_camera = version < kImageSizeInCalibration ? 16 : 18;
     const std::size_t count = bytes.size() / sizeof(float);

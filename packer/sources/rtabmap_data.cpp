@@ -56,7 +56,7 @@ bool DataReader::serves(const PayloadSet& wanted) const noexcept {
          wanted.userdata == wanted_.userdata;
 }
 
-void DataReader::read(const Place& place, MatrixUnpacker& unpacker, SignatureRecord& out) {
+void DataReader::read(const CellPlace& place, MatrixUnpacker& unpacker, SignatureRecord& out) {
   rows_.find(place.signature);
   if (!rows_.next()) {
     for (Bytes* bytes : {&out.calibration, &out.image, &out.depth, &out.depth_confidence}) {
@@ -67,7 +67,7 @@ void DataReader::read(const Place& place, MatrixUnpacker& unpacker, SignatureRec
     out.user_data.reset();
     return;
   }
-  const Place calibration = place.at("Data.calibration");
+  const CellPlace calibration = place.at("Data.calibration");
   assign(out.calibration, blob_cell(rows_.row(), kCalibration, calibration));
   check_calibration(out.calibration, version_, calibration);
   read_images(place, unpacker, out);
@@ -77,20 +77,22 @@ void DataReader::read(const Place& place, MatrixUnpacker& unpacker, SignatureRec
   if (rows_.next()) place.at("Data.id").damaged("expected one row, found two");
 }
 
-void DataReader::read_images(const Place& place, MatrixUnpacker& unpacker, SignatureRecord& out) {
+void DataReader::read_images(const CellPlace& place, MatrixUnpacker& unpacker,
+                             SignatureRecord& out) {
   const SqliteQuery& row = rows_.row();
   assign(out.image, blob_cell(row, kImage, place.at("Data.image")));
   check_image(out.image, place.at("Data.image"));
   assign(out.depth, blob_cell(row, kDepth, place.at("Data.depth")));
   check_depth(out.depth, place.at("Data.depth"));
-  const Place confidence = place.at("Data.depth_confidence");
+  const CellPlace confidence = place.at("Data.depth_confidence");
   assign(out.depth_confidence, blob_cell(row, kDepthConfidence, confidence));
   if (!out.depth_confidence.empty()) unpacker.unpack(out.depth_confidence, confidence, scratch_);
 }
 
-void DataReader::read_scan(const Place& place, MatrixUnpacker& unpacker, std::optional<Scan>& out) {
+void DataReader::read_scan(const CellPlace& place, MatrixUnpacker& unpacker,
+                           std::optional<Scan>& out) {
   const SqliteQuery& row = rows_.row();
-  const Place points = place.at("Data.scan");
+  const CellPlace points = place.at("Data.scan");
   const auto blob = blob_cell(row, kScan, points);
   if (blob.empty()) {
     out.reset();
@@ -101,13 +103,14 @@ void DataReader::read_scan(const Place& place, MatrixUnpacker& unpacker, std::op
   scan.data = std::move(reused);
   scan.max_points = float_cell(row, kScanMaxPoints, place.at("Data.scan_max_pts"), 0);
   scan.range_max = float_cell(row, kScanMaxRange, place.at("Data.scan_max_range"), 0);
-  const Place info = place.at("Data.scan_info");
+  const CellPlace info = place.at("Data.scan_info");
   parse_scan_info(blob_cell(row, kScanInfo, info), version_, info, scan);
   unpacker.unpack(blob, points, scan.data);
   check_scan(scan, points);
 }
 
-void DataReader::read_grid(const Place& place, MatrixUnpacker& unpacker, std::optional<Grid>& out) {
+void DataReader::read_grid(const CellPlace& place, MatrixUnpacker& unpacker,
+                           std::optional<Grid>& out) {
   const SqliteQuery& row = rows_.row();
   if (!out) out.emplace();
   Grid& grid = *out;
@@ -129,7 +132,7 @@ void DataReader::read_grid(const Place& place, MatrixUnpacker& unpacker, std::op
                      float_cell(row, kViewPointZ, place.at("Data.view_point_z"), 0)};
 }
 
-bool DataReader::read_matrix(int column, const Place& place, MatrixUnpacker& unpacker,
+bool DataReader::read_matrix(int column, const CellPlace& place, MatrixUnpacker& unpacker,
                              std::optional<Matrix>& out) {
   const auto blob = blob_cell(rows_.row(), column, place);
   if (blob.empty()) {

@@ -9,22 +9,22 @@
 
 namespace zonepack::packer {
 
-// The row of table Data of one signature at a time: calibration, scan, grid, images, user data.
-// Columns of payloads that are not wanted are not read from the file.
+// Reads the row of table Data of one signature at a time: calibration, scan, grid, images, user
+// data. Does not read columns of payloads that are not wanted.
 class DataReader {
  public:
   DataReader(const SqliteFile& file, const RtabmapSchema& schema, const PayloadSet& wanted);
 
   bool serves(const PayloadSet& wanted) const noexcept;
 
-  // Replaces the parts of `out` that stand in Data.
-  void read(const Place& place, MatrixUnpacker& unpacker, SignatureRecord& out);
+  // Replaces the parts of `out` that are stored in Data.
+  void read(const CellPlace& place, MatrixUnpacker& unpacker, SignatureRecord& out);
 
  private:
-  void read_images(const Place& place, MatrixUnpacker& unpacker, SignatureRecord& out);
-  void read_scan(const Place& place, MatrixUnpacker& unpacker, std::optional<Scan>& out);
-  void read_grid(const Place& place, MatrixUnpacker& unpacker, std::optional<Grid>& out);
-  bool read_matrix(int column, const Place& place, MatrixUnpacker& unpacker,
+  void read_images(const CellPlace& place, MatrixUnpacker& unpacker, SignatureRecord& out);
+  void read_scan(const CellPlace& place, MatrixUnpacker& unpacker, std::optional<Scan>& out);
+  void read_grid(const CellPlace& place, MatrixUnpacker& unpacker, std::optional<Grid>& out);
+  bool read_matrix(int column, const CellPlace& place, MatrixUnpacker& unpacker,
                    std::optional<Matrix>& out);
 
   PayloadSet wanted_;

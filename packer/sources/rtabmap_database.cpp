@@ -31,7 +31,7 @@ class RtabmapDatabase::Reader {
   const RtabmapSchema& schema() const { return schema_; }
 
   void read(std::int32_t id, const PayloadSet& wanted, SignatureRecord& into) {
-    const Place place{&file_.name(), id, ""};
+    const CellPlace place{&file_.name(), id, ""};
     read_node_row(place, into);
     into.links.clear();
     if (links_) links_->read(place, unpacker_, into.links);
@@ -50,7 +50,7 @@ class RtabmapDatabase::Reader {
   }
 
  private:
-  void read_node_row(const Place& place, SignatureRecord& into) {
+  void read_node_row(const CellPlace& place, SignatureRecord& into) {
     nodes_.find(place.signature);
     if (!nodes_.next()) place.at("Node.id").damaged("expected a row, found none");
     const SqliteQuery& row = nodes_.row();

@@ -12,12 +12,14 @@
 
 namespace zonepack::packer {
 
-// An RTAB-Map database, schema 0.11 to 0.23, read-only. One object serves one thread; another
-// thread takes its own with reopen(), which shares the outline and costs a file open.
+// An RTAB-Map database, schema 0.11 to 0.23, read-only.
 //
-// What it throws: DamagedSignature when a signature's values are not what they must be, or stand on
-// damaged pages of the file; read() of others goes on working. SqliteError for anything else.
+// Throws DamagedSignature when a signature's values are invalid or are stored on damaged pages of
+// the file; read() of other signatures still works. Throws SqliteError for anything else.
+//
 // Memory: the outline, one signature, and SQLite's page cache of 2 MiB.
+// Threads: one per object; another thread gets its own by reopen(), which shares the outline and
+// opens the file again.
 class RtabmapDatabase {
  public:
   explicit RtabmapDatabase(const std::filesystem::path& path);
@@ -29,10 +31,10 @@ class RtabmapDatabase {
 
   const MapOutline& outline() const noexcept;
 
-  // Reads one signature of the outline, with the payloads wanted. Everything is taken as stored:
-  // scans, grids and user data unzipped, images, depth and calibration checked but untouched.
-  // `into` is replaced; its memory is reused, so reading in order of id into the same record costs
-  // little more than SQLite and zlib themselves.
+  // Reads one signature of the outline with the wanted payloads, as stored: scans, grids and user
+  // data unzipped; images, depth and calibration checked but unchanged. Replaces `into` and reuses
+  // its memory, so that reading in order of id into one record costs little more than SQLite and
+  // zlib.
   void read(std::int32_t id, const PayloadSet& wanted, SignatureRecord& into);
   SignatureRecord read(std::int32_t id, const PayloadSet& wanted);
 

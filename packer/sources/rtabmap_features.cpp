@@ -62,7 +62,7 @@ FeatureReader::FeatureReader(const SqliteFile& file, const RtabmapSchema& schema
             schema.feature_table(), "node_id"),
       has_octave_(schema.has(schema.feature_table(), "octave")) {}
 
-void FeatureReader::read(const Place& place, Features& out) {
+void FeatureReader::read(const CellPlace& place, Features& out) {
   clear(out);
   rows_.find(place.signature);
   const SqliteQuery& row = rows_.row();
@@ -82,7 +82,7 @@ void FeatureReader::read(const Place& place, Features& out) {
   }
 }
 
-void FeatureReader::append_descriptor(const Place& place, Features& out) {
+void FeatureReader::append_descriptor(const CellPlace& place, Features& out) {
   using Type = Features::DescriptorType;
   const SqliteQuery& row = rows_.row();
   const int storage = row.type(kDescriptor);

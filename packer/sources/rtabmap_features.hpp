@@ -8,16 +8,16 @@
 
 namespace zonepack::packer {
 
-// The keypoints of one signature at a time.
+// Reads the keypoints of one signature at a time.
 class FeatureReader {
  public:
   FeatureReader(const SqliteFile& file, const RtabmapSchema& schema);
 
   // Replaces `out`, keeping its memory. `place` names the file and signature.
-  void read(const Place& place, Features& out);
+  void read(const CellPlace& place, Features& out);
 
  private:
-  void append_descriptor(const Place& place, Features& out);
+  void append_descriptor(const CellPlace& place, Features& out);
 
   KeyedRows rows_;
   bool has_octave_;

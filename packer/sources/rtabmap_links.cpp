@@ -21,7 +21,7 @@ enum LinkColumn {
   kTransVariance
 };
 
-std::optional<Matrix> optional_matrix(const SqliteQuery& row, int column, const Place& place,
+std::optional<Matrix> optional_matrix(const SqliteQuery& row, int column, const CellPlace& place,
                                       MatrixUnpacker& unpacker) {
   const auto blob = blob_cell(row, column, place);
   if (blob.empty()) return std::nullopt;
@@ -39,7 +39,7 @@ LinkReader::LinkReader(const SqliteFile& file, const RtabmapSchema& schema)
             "Link", "from_id"),
       has_variances_(schema.has("Link", "rot_variance") && schema.has("Link", "trans_variance")) {}
 
-void LinkReader::read(const Place& place, MatrixUnpacker& unpacker, std::vector<Link>& out) {
+void LinkReader::read(const CellPlace& place, MatrixUnpacker& unpacker, std::vector<Link>& out) {
   out.clear();
   rows_.find(place.signature);
   const SqliteQuery& row = rows_.row();
@@ -57,10 +57,10 @@ void LinkReader::read(const Place& place, MatrixUnpacker& unpacker, std::vector<
   });
 }
 
-// Before 0.13 RTAB-Map stored two variances; its later versions read them as this diagonal.
-void LinkReader::read_information(const Place& place, Link& link) const {
+// RTAB-Map before 0.13 stored two variances; later versions read them as this diagonal.
+void LinkReader::read_information(const CellPlace& place, Link& link) const {
   const SqliteQuery& row = rows_.row();
-  const Place matrix = place.at("Link.information_matrix");
+  const CellPlace matrix = place.at("Link.information_matrix");
   const auto bytes = blob_cell(row, kLinkInformation, matrix);
   expect_elements(bytes, 36, sizeof(double), "float64", matrix);
   if (!bytes.empty()) {
@@ -84,7 +84,7 @@ GlobalDescriptorReader::GlobalDescriptorReader(const SqliteFile& file, const Rta
     : rows_(file, schema.columns("GlobalDescriptor", {"type", "info", "data"}), "GlobalDescriptor",
             "node_id") {}
 
-void GlobalDescriptorReader::read(const Place& place, MatrixUnpacker& unpacker,
+void GlobalDescriptorReader::read(const CellPlace& place, MatrixUnpacker& unpacker,
                                   std::vector<GlobalDescriptor>& out) {
   out.clear();
   rows_.find(place.signature);
@@ -93,7 +93,7 @@ void GlobalDescriptorReader::read(const Place& place, MatrixUnpacker& unpacker,
     GlobalDescriptor descriptor;
     descriptor.type = int32_cell(row, 0, place.at("GlobalDescriptor.type"));
     descriptor.info = optional_matrix(row, 1, place.at("GlobalDescriptor.info"), unpacker);
-    const Place data = place.at("GlobalDescriptor.data");
+    const CellPlace data = place.at("GlobalDescriptor.data");
     unpacker.unpack(blob_cell(row, 2, data), data, descriptor.data);
     out.push_back(std::move(descriptor));
   }

@@ -11,24 +11,24 @@
 
 namespace zonepack::packer {
 
-// The links that start at one signature at a time, sorted by type, then destination.
+// Reads the links that start at one signature at a time, sorted by type, then destination.
 class LinkReader {
  public:
   LinkReader(const SqliteFile& file, const RtabmapSchema& schema);
-  void read(const Place& place, MatrixUnpacker& unpacker, std::vector<Link>& out);
+  void read(const CellPlace& place, MatrixUnpacker& unpacker, std::vector<Link>& out);
 
  private:
-  void read_information(const Place& place, Link& link) const;
+  void read_information(const CellPlace& place, Link& link) const;
 
   KeyedRows rows_;
   bool has_variances_;  // before 0.13: two variances instead of an information matrix
 };
 
-// The global descriptors of one signature at a time, in the order of the table.
+// Reads the global descriptors of one signature at a time, in table order.
 class GlobalDescriptorReader {
  public:
   GlobalDescriptorReader(const SqliteFile& file, const RtabmapSchema& schema);
-  void read(const Place& place, MatrixUnpacker& unpacker, std::vector<GlobalDescriptor>& out);
+  void read(const CellPlace& place, MatrixUnpacker& unpacker, std::vector<GlobalDescriptor>& out);
 
  private:
   KeyedRows rows_;

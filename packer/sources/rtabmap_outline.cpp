@@ -35,7 +35,7 @@ void read_nodes(const SqliteFile& file, const RtabmapSchema& schema, MapOutline&
   while (row.step()) {
     NodeOutline node;
     node.id = node_id(file, row);
-    const Place place{&file.name(), node.id, "Node"};
+    const CellPlace place{&file.name(), node.id, "Node"};
     std::optional<Damage> damage;
     try {
       read_node(row, place, node);
@@ -63,7 +63,7 @@ struct AdminMatrix {
 AdminMatrix admin_matrix(const SqliteFile& file, const SqliteQuery& row, int column,
                          const char* name, std::int32_t type) {
   AdminMatrix result;
-  const Place place{&file.name(), 0, name};
+  const CellPlace place{&file.name(), 0, name};
   const auto blob = blob_cell(row, column, place);
   if (blob.empty()) return result;
   MatrixUnpacker().unpack(blob, place, result.matrix);
@@ -77,7 +77,7 @@ AdminMatrix admin_matrix(const SqliteFile& file, const SqliteQuery& row, int col
 
 void assign_pose(const SqliteFile& file, MapOutline& outline, std::int32_t id,
                  std::span<const std::byte> pose) {
-  const Place place{&file.name(), id, "Admin.opt_poses"};
+  const CellPlace place{&file.name(), id, "Admin.opt_poses"};
   if (id <= 0) {
     ++outline.landmark_poses;
     return;
@@ -138,9 +138,9 @@ void read_optimised_map(const SqliteFile& file, const RtabmapSchema& schema, Map
   if (!row.step()) return;
   AdminMatrix cells = admin_matrix(file, row, 0, "Admin.opt_map", kInt8);
   if (!cells.present) return;
-  // Drawn, not packed: the nearest float32 will do.
+  // Drawn, not packed, so the nearest float32 will do.
   const auto number = [&](int column, const char* name) {
-    const Place place{&file.name(), 0, name};
+    const CellPlace place{&file.name(), 0, name};
     const double value = finite_cell(row, column, place);
     if (std::fabs(value) > std::numeric_limits<float>::max()) place.damaged("is too large");
     return static_cast<float>(value);
@@ -193,7 +193,7 @@ void read_totals(const SqliteFile& file, const RtabmapSchema& schema, MapOutline
   }
 }
 
-// For what the map can do without: a part that cannot be read is told, not fatal.
+// For parts that the map can do without: an unreadable part gives a warning, not an error.
 template <typename Read>
 void read_if_possible(MapOutline& outline, const char* without, Read read) {
   try {
@@ -210,7 +210,7 @@ std::string node_columns(const RtabmapSchema& schema) {
                                  "ground_truth_pose", "velocity", "gps", "env_sensors"});
 }
 
-void read_node(const SqliteQuery& row, const Place& place, NodeOutline& node) {
+void read_node(const SqliteQuery& row, const CellPlace& place, NodeOutline& node) {
   node.weight = int32_cell(row, 2, place.at("Node.weight"), 0);
   node.map_id = int32_cell(row, 1, place.at("Node.map_id"));
   node.stamp = finite_cell(row, 3, place.at("Node.stamp"));

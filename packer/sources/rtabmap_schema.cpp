@@ -16,7 +16,7 @@ constexpr SchemaVersion kFirstUnknown{0, 24, 0};
 constexpr const char* kTables[] = {"Node",          "Data", "Link",  "Feature",
                                    "Map_Node_Word", "Info", "Admin", "GlobalDescriptor"};
 
-// What a database newer than the newest known one must still have to be read without loss.
+// Columns that a database newer than the newest known schema needs to be read without loss.
 constexpr std::pair<const char*, const char*> kNeeded[] = {{"Node", "map_id"},
                                                            {"Node", "weight"},
                                                            {"Node", "stamp"},

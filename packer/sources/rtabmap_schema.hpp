@@ -18,12 +18,12 @@ struct SchemaVersion {
   std::string text() const;
 };
 
-// Which tables and columns an RTAB-Map database has. What is read is decided by these; the version
-// decides only where the same column changed its meaning (calibration and scan_info before 0.18).
+// Which tables and columns an RTAB-Map database has. These decide what is read; the version matters
+// only where the same column changed its meaning (calibration and scan_info before 0.18).
 class RtabmapSchema {
  public:
-  // Throws SqliteError when this is not an RTAB-Map database, older than 0.11, or newer than 0.23
-  // and without a column that this program needs.
+  // Throws SqliteError when this is not an RTAB-Map database, or it is older than 0.11, or newer
+  // than 0.23 and lacks a column that this program needs.
   explicit RtabmapSchema(const SqliteFile& file);
 
   SchemaVersion version() const noexcept { return version_; }
@@ -31,11 +31,11 @@ class RtabmapSchema {
 
   bool has(const std::string& table) const { return tables_.contains(table); }
   bool has(const std::string& table, const std::string& column) const;
-  // The table of keypoints: Feature, before 0.13 Map_Node_Word.
+  // The table of keypoints: Feature, or Map_Node_Word before 0.13.
   const std::string& feature_table() const noexcept { return feature_table_; }
 
-  // A SELECT list over `table` in the given order, with NULL for each column that it has not, so
-  // that a column's position never depends on the version.
+  // A SELECT list over `table` in the given order, with NULL for each missing column, so that a
+  // column's position does not depend on the version.
   std::string columns(const std::string& table, std::initializer_list<const char*> names) const;
 
  private:

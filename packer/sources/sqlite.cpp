@@ -23,7 +23,7 @@ std::string first_bytes(const fs::path& path, std::size_t count) {
   return bytes;
 }
 
-fs::path beside(const fs::path& path, const char* suffix) {
+fs::path with_suffix(const fs::path& path, const char* suffix) {
   fs::path other = path;
   other += suffix;
   return other;
@@ -54,14 +54,14 @@ void refuse_unless_database(const fs::path& path, const std::string& name) {
 
 void refuse_if_not_closed(const fs::path& path, const std::string& name) {
   std::error_code error;
-  const fs::path wal = beside(path, "-wal");
+  const fs::path wal = with_suffix(path, "-wal");
   if (const auto size = fs::file_size(wal, error); !error && size > 0) {
     throw SqliteError(name + ": has changes that are not in the file yet (" + wal.string() +
                       "); close RTAB-Map, or run: sqlite3 '" + name +
                       "' 'PRAGMA wal_checkpoint(TRUNCATE)'");
   }
-  const fs::path journal = beside(path, "-journal");
-  // SQLite's own rule: a journal whose first byte is not zero has not been finished.
+  const fs::path journal = with_suffix(path, "-journal");
+  // SQLite's own rule: a journal whose first byte is not zero is unfinished.
   const std::string first = first_bytes(journal, 1);
   if (!first.empty() && first[0] != '\0') {
     throw SqliteError(name + ": a write to it was interrupted (" + journal.string() +
@@ -88,7 +88,7 @@ std::string immutable_uri(const fs::path& absolute_path) {
 
 SqliteFile::SqliteFile(const fs::path& path) : name_(path.string()) {
   refuse_unless_database(path, name_);
-  // SQLite keeps its log and journal beside the file itself, not beside a link to it.
+  // SQLite keeps its log and journal next to the file itself, not next to a link to it.
   const fs::path file = fs::canonical(path);
   refuse_if_not_closed(file, name_);
   sqlite3* handle = nullptr;

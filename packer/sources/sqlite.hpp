@@ -15,8 +15,8 @@
 
 namespace zonepack::packer {
 
-// The file is no database, or a part of it cannot be read. The message names the file and what to
-// do. Other parts of the same file may still be readable.
+// The file is not a database, or a part of it cannot be read. The message names the file and says
+// what to do. Other parts of the file may still be readable.
 class SqliteError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -33,12 +33,14 @@ class SqliteCorrupt : public SqliteError {
   std::string problem_;
 };
 
-// A SQLite database opened read-only and immutable: not one byte, lock, journal or timestamp of it
-// changes. One object serves one thread; another thread opens its own.
+// A SQLite database opened read-only and immutable: no byte, lock, journal or timestamp of it
+// changes.
+//
+// Threads: one per object; another thread opens its own.
 class SqliteFile {
  public:
-  // Refuses what is not a whole, closed database: a missing or empty file, a folder, another kind
-  // of file, one with a live write-ahead log or a hot journal beside it.
+  // Refuses anything but a whole, closed database: a missing or empty file, a folder, another kind
+  // of file, one with a live write-ahead log or a hot journal next to it.
   explicit SqliteFile(const std::filesystem::path& path);
 
   const std::string& name() const noexcept { return name_; }  // the path as given

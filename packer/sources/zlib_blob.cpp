@@ -12,7 +12,7 @@ constexpr std::array<std::uint32_t, 7> kDepthBytes = {1, 1, 2, 2, 4, 4, 8};
 constexpr std::array<const char*, 7> kDepthNames = {"uint8", "int8",    "uint16", "int16",
                                                     "int32", "float32", "float64"};
 constexpr std::size_t kTrailerBytes = 12;
-// Deflate turns two bits into 258 bytes at most.
+// Deflate expands two bits to at most 258 bytes.
 constexpr std::uint64_t kDeflateMostExpansion = 1032;
 
 std::uint32_t channels_of(std::int32_t type) { return (static_cast<std::uint32_t>(type) >> 3) + 1; }
@@ -42,7 +42,7 @@ MatrixUnpacker::MatrixUnpacker() {
 
 MatrixUnpacker::~MatrixUnpacker() { inflateEnd(&stream_); }
 
-void MatrixUnpacker::unpack(std::span<const std::byte> blob, const Place& place, Matrix& out) {
+void MatrixUnpacker::unpack(std::span<const std::byte> blob, const CellPlace& place, Matrix& out) {
   if (blob.size() <= kTrailerBytes) {
     place.damaged("expected a compressed matrix (zlib stream and 12 bytes of size), found " +
                   std::to_string(blob.size()) + " bytes");
@@ -69,7 +69,7 @@ void MatrixUnpacker::unpack(std::span<const std::byte> blob, const Place& place,
   }
   out.data.resize(static_cast<std::size_t>(bytes));
 
-  // A stream for nothing still needs somewhere to point.
+  // zlib needs a valid pointer even for an empty result.
   std::byte nothing{};
   inflateReset(&stream_);
   stream_.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(blob.data()));

@@ -13,7 +13,7 @@
 
 namespace zonepack::packer {
 
-// No matrix of a source may be larger once unzipped: 256 MiB, a scan of ten million points.
+// The largest unzipped matrix accepted from a source: 256 MiB, a scan of ten million points.
 inline constexpr std::uint64_t kLargestMatrixBytes = std::uint64_t{256} << 20;
 
 // Bytes of one element (all channels) of an OpenCV type; 0 when there is no such type.
@@ -23,7 +23,9 @@ std::uint32_t element_bytes(std::int32_t type) noexcept;
 std::string describe_type(std::int32_t type);
 
 // Reads RTAB-Map's compressed matrices: a zlib stream, then rows, columns and OpenCV type as three
-// int32 at the very end. Keeps its working memory, so one object reads many blobs; one thread.
+// int32 at the very end. Keeps its working memory, so use one object for many blobs.
+//
+// Threads: one.
 class MatrixUnpacker {
  public:
   MatrixUnpacker();
@@ -32,10 +34,10 @@ class MatrixUnpacker {
   MatrixUnpacker& operator=(const MatrixUnpacker&) = delete;
 
   // Unzips `blob` into `out`, whose memory is reused. The declared size is checked against the
-  // limit and against what the stream can hold before any memory is taken. Reports to `place` when
-  // the stream is not whole, does not have exactly the declared size, or is followed by other
-  // bytes.
-  void unpack(std::span<const std::byte> blob, const Place& place, Matrix& out);
+  // limit and against what the stream can hold before any memory is allocated. Throws through
+  // `place` when the stream is not whole, does not have exactly the declared size, or is followed
+  // by other bytes.
+  void unpack(std::span<const std::byte> blob, const CellPlace& place, Matrix& out);
 
  private:
   z_stream stream_{};

@@ -17,7 +17,7 @@ bool is_cells(fb::Part part) {
          part == fb::Part::EmptyCells;
 }
 
-std::optional<std::string> fault_of_column(const fb::Record& record, const ColumnView& column) {
+std::optional<std::string> column_problem(const fb::Record& record, const ColumnView& column) {
   if (is_attribute(column.field()) && record.first_row() != 0)
     return "repeats an attribute of the first record";
   if (column.codec() == fb::ColumnCodec::Subset && !is_cells(record.part())) {
@@ -30,7 +30,8 @@ std::optional<std::string> fault_of_column(const fb::Record& record, const Colum
   return std::nullopt;
 }
 
-std::optional<std::string> fault_of_bulk(const fb::ChunkEntry& entry, const fb::BulkChunk& chunk) {
+std::optional<std::string> bulk_chunk_problem(const fb::ChunkEntry& entry,
+                                              const fb::BulkChunk& chunk) {
   const auto& bytes = *chunk.bytes();
   if (bytes.size() < kColumnPadding ||
       std::any_of(bytes.end() - kColumnPadding, bytes.end(), [](auto b) { return b != 0; })) {
@@ -54,8 +55,8 @@ std::optional<std::string> fault_of_bulk(const fb::ChunkEntry& entry, const fb::
         return record_text(i, record) + " has two columns " + fb::EnumNameField(column.field());
       }
       const ColumnView view = RecordView(chunk, i).column(column.field());
-      if (const auto fault = fault_of_column(record, view)) {
-        return record_text(i, record) + ": " + *fault;
+      if (const auto problem = column_problem(record, view)) {
+        return record_text(i, record) + ": " + *problem;
       }
     }
   }
@@ -78,7 +79,7 @@ bool holds_links_only(const fb::Signature& s) {
          s.velocity() == nullptr && s.gps() == nullptr && s.env_sensors() == nullptr;
 }
 
-std::optional<std::string> fault_of_core(const fb::CoreChunk& chunk) {
+std::optional<std::string> core_chunk_problem(const fb::CoreChunk& chunk) {
   for (const fb::Signature* signature : *chunk.signatures()) {
     if (signature->continued() && !holds_links_only(*signature)) {
       return "an entry that continues a signature holds more than links";
@@ -89,10 +90,10 @@ std::optional<std::string> fault_of_core(const fb::CoreChunk& chunk) {
 
 }  // namespace
 
-std::optional<std::string> find_fault(const fb::ChunkEntry& entry, ByteSpan decoded) {
+std::optional<std::string> find_chunk_problem(const fb::ChunkEntry& entry, ByteSpan decoded) {
   return entry.kind() == fb::PayloadKind::Core
-             ? fault_of_core(*fb::GetCoreChunk(decoded.data()))
-             : fault_of_bulk(entry, *fb::GetBulkChunk(decoded.data()));
+             ? core_chunk_problem(*fb::GetCoreChunk(decoded.data()))
+             : bulk_chunk_problem(entry, *fb::GetBulkChunk(decoded.data()));
 }
 
 bool refers_to_scan(const fb::ChunkEntry& entry, ByteSpan decoded) {

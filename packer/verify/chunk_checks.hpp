@@ -8,12 +8,12 @@
 
 namespace zonepack::packer {
 
-// What reading does not rely on but a packer promises of a decoded chunk that check_chunk() has
-// passed: nothing unused but zero, every column and every ordinal accounted for. Returns what is
-// wrong, or nothing.
-std::optional<std::string> find_fault(const fb::ChunkEntry& entry, ByteSpan decoded);
+// Checks what readers do not rely on but a packer promises about a decoded chunk that check_chunk()
+// has accepted: unused bits are zero, every column and every ordinal is accounted for. Returns the
+// first problem found, as the end of a sentence about the chunk.
+std::optional<std::string> find_chunk_problem(const fb::ChunkEntry& entry, ByteSpan decoded);
 
-// Whether rows of the chunk are told as points of the scan.
+// Whether rows of the chunk are stored as indices of scan points.
 bool refers_to_scan(const fb::ChunkEntry& entry, ByteSpan decoded);
 
 }  // namespace zonepack::packer

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "packer/verify/problem.hpp"
+
 namespace zonepack::packer {
 namespace {
 
@@ -15,8 +17,8 @@ class ZoneComparison {
   ZoneComparison(const fb::Manifest& manifest, const fb::Zone& zone, const PackFacts& pack)
       : manifest_(manifest), zone_(zone), pack_(pack) {}
 
-  Lies lies() {
-    if (!names()) return std::move(lies_);
+  Contradictions contradictions() {
+    if (!names()) return std::move(contradictions_);
     compare("pack_bytes", zone_.pack_bytes(), pack_.bytes);
     compare("grid_needs_scan", zone_.grid_needs_scan(), pack_.grid_needs_scan);
     payloads();
@@ -26,38 +28,38 @@ class ZoneComparison {
       compare("features", zone_.features(), pack_.features);
       nodes();
     }
-    return std::move(lies_);
+    return std::move(contradictions_);
   }
 
  private:
   void compare(const std::string& what, std::uint64_t said, std::uint64_t found) {
     if (said == found) return;
-    lies_.push_back("says " + what + " " + std::to_string(said) + ", the pack has " +
-                    std::to_string(found));
+    contradictions_.push_back("says " + what + " " + std::to_string(said) + ", the pack has " +
+                              std::to_string(found));
   }
 
-  // False when it is another pack than the one named: nothing else is comparable.
+  // False when this is another pack than the one named: then nothing else is comparable.
   bool names() {
     const std::string name = zone_.name()->str();
     const std::string file = name + "-" + to_hex(pack_.digest).substr(0, 16) + ".zpk";
     if (pack_.zone != name) {
-      lies_.push_back("names a pack of zone " + quoted(name) + ", the pack is of zone " +
-                      quoted(pack_.zone));
+      contradictions_.push_back("names a pack of zone " + quoted(name) + ", the pack is of zone " +
+                                quoted(pack_.zone));
     }
     if (!std::equal(pack_.digest.begin(), pack_.digest.end(), zone_.pack_digest()->begin())) {
-      lies_.push_back("says digest " +
-                      to_hex(std::span(zone_.pack_digest()->data(), sizeof(Digest32))) +
-                      ", the pack has " + to_hex(pack_.digest));
+      contradictions_.push_back("says digest " +
+                                to_hex(std::span(zone_.pack_digest()->data(), sizeof(Digest32))) +
+                                ", the pack has " + to_hex(pack_.digest));
     }
-    if (!lies_.empty()) return false;
+    if (!contradictions_.empty()) return false;
     if (zone_.pack()->str() != file) {
-      lies_.push_back("names the pack " + quoted(zone_.pack()->str()) + ", by its content it is " +
-                      quoted(file));
+      contradictions_.push_back("names the pack " + quoted(zone_.pack()->str()) +
+                                ", by its content it is " + quoted(file));
     }
     if (zone_.parent() != nullptr && !name.starts_with(zone_.parent()->str() + ".")) {
-      lies_.push_back("says it is a part of " + quoted(zone_.parent()->str()) +
-                      ", whose parts are called " + quoted(zone_.parent()->str() + ".1") +
-                      " and so on");
+      contradictions_.push_back("says it is a part of " + quoted(zone_.parent()->str()) +
+                                ", whose parts are called " + quoted(zone_.parent()->str() + ".1") +
+                                " and so on");
     }
     return true;
   }
@@ -66,8 +68,9 @@ class ZoneComparison {
     std::uint32_t seen = 0;
     for (const fb::PayloadBytes* said : *zone_.payloads()) {
       const PackFacts::Payload& found = pack_.payloads[said->kind()];
-      const std::string kind = kind_text(said->kind());
-      if ((seen >> said->kind() & 1) != 0) lies_.push_back("lists payload " + kind + " twice");
+      const std::string kind = kind_text(static_cast<fb::PayloadKind>(said->kind()));
+      if ((seen >> said->kind() & 1) != 0)
+        contradictions_.push_back("lists payload " + kind + " twice");
       seen |= 1u << said->kind();
       compare("decoded bytes of " + kind, said->decoded(), found.decoded);
       compare("stored bytes of " + kind, said->stored(), found.stored);
@@ -75,16 +78,12 @@ class ZoneComparison {
     }
     for (std::uint8_t kind = 0; kind < pack_.payloads.size(); ++kind) {
       if (pack_.payloads[kind].chunks == 0) continue;
-      if ((seen >> kind & 1) == 0) lies_.push_back("does not list payload " + kind_text(kind));
+      const std::string name = kind_text(static_cast<fb::PayloadKind>(kind));
+      if ((seen >> kind & 1) == 0) contradictions_.push_back("does not list payload " + name);
       if ((manifest_.payload_mask() >> kind & 1) == 0) {
-        lies_.push_back("has payload " + kind_text(kind) + ", which the map's mask leaves out");
+        contradictions_.push_back("has payload " + name + ", which the map's mask leaves out");
       }
     }
-  }
-
-  static std::string kind_text(std::uint8_t kind) {
-    const char* const name = to_string(static_cast<fb::PayloadKind>(kind));
-    return name == nullptr ? std::to_string(kind) : name;
   }
 
   void slots() {
@@ -99,7 +98,7 @@ class ZoneComparison {
 
   void nodes() {
     if (zone_.nodes() == nullptr) {
-      if (!pack_.nodes.empty()) lies_.push_back("has no nodes");
+      if (!pack_.nodes.empty()) contradictions_.push_back("has no nodes");
       return;
     }
     const std::size_t count = std::min<std::size_t>(zone_.nodes()->size(), pack_.nodes.size());
@@ -107,13 +106,13 @@ class ZoneComparison {
       const fb::Node& said = *zone_.nodes()->Get(i);
       const Transform& T = pack_.nodes[i].T_map_base;
       if (said.id() != pack_.nodes[i].id) {
-        lies_.push_back("says node number " + std::to_string(i) + " is " +
-                        std::to_string(said.id()) + ", the pack has " +
-                        std::to_string(pack_.nodes[i].id));
+        contradictions_.push_back("says node number " + std::to_string(i) + " is " +
+                                  std::to_string(said.id()) + ", the pack has " +
+                                  std::to_string(pack_.nodes[i].id));
       } else if (!same_bits(said.x(), T[3]) || !same_bits(said.y(), T[7]) ||
                  !same_bits(said.z(), T[11]) || !same_yaw(said.yaw(), T)) {
-        lies_.push_back("places node " + std::to_string(said.id()) +
-                        " elsewhere than its pose in the pack");
+        contradictions_.push_back("places node " + std::to_string(said.id()) +
+                                  " elsewhere than its pose in the pack");
       }
     }
   }
@@ -130,13 +129,14 @@ class ZoneComparison {
   const fb::Manifest& manifest_;
   const fb::Zone& zone_;
   const PackFacts& pack_;
-  Lies lies_;
+  Contradictions contradictions_;
 };
 
 }  // namespace
 
-Lies lies_about_zone(const fb::Manifest& manifest, const fb::Zone& zone, const PackFacts& pack) {
-  return ZoneComparison(manifest, zone, pack).lies();
+Contradictions zone_contradictions(const fb::Manifest& manifest, const fb::Zone& zone,
+                                   const PackFacts& pack) {
+  return ZoneComparison(manifest, zone, pack).contradictions();
 }
 
 }  // namespace zonepack::packer

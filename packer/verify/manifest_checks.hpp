@@ -8,18 +8,19 @@
 #include "packer/verify/pack_facts.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 
-// Holding a checked manifest against what its packs hold.
+// Compares a checked manifest with what its packs hold.
 namespace zonepack::packer {
 
-using Lies = std::vector<std::string>;  // "says 12 signatures, the pack holds 11"
+using Contradictions = std::vector<std::string>;  // "says 12 signatures, the pack holds 11"
 
-// What the manifest says of a zone that its pack contradicts.
-Lies lies_about_zone(const fb::Manifest& manifest, const fb::Zone& zone, const PackFacts& pack);
+// What the manifest says about a zone, but its pack contradicts.
+Contradictions zone_contradictions(const fb::Manifest& manifest, const fb::Zone& zone,
+                                   const PackFacts& pack);
 
-// What it says of the map as a whole: signatures in one zone each and in the right one, edges,
-// portals, provenance. `packs` are by zone; checks that need all of them are left out when one is
-// missing or not complete.
-Lies lies_about_map(const fb::Manifest& manifest,
-                    const std::vector<std::optional<PackFacts>>& packs);
+// The same for the map as a whole: each signature in exactly one zone, the right one; edges;
+// portals; provenance. `packs` are by zone; checks that need all of them are skipped when one is
+// missing or incomplete.
+Contradictions map_contradictions(const fb::Manifest& manifest,
+                                  const std::vector<std::optional<PackFacts>>& packs);
 
 }  // namespace zonepack::packer

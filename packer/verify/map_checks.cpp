@@ -17,28 +17,26 @@ std::string name_of(const fb::Manifest& manifest, std::uint32_t zone) {
   return manifest.zones()->Get(zone)->name()->str();
 }
 
-std::string text_of(const flatbuffers::String* text) {
-  return text == nullptr ? std::string() : text->str();
-}
-
-// The zone of every signature; tells those that are in two.
+// The zone of every signature; reports signatures that are in two.
 std::map<std::int32_t, std::uint32_t> zones_by_id(const fb::Manifest& manifest, const Packs& packs,
-                                                  Lies& lies) {
+                                                  Contradictions& contradictions) {
   std::map<std::int32_t, std::uint32_t> zone_of;
   for (std::uint32_t zone = 0; zone < packs.size(); ++zone) {
     if (!packs[zone]) continue;
     for (const PackFacts::Node& node : packs[zone]->nodes) {
       const auto [found, inserted] = zone_of.emplace(node.id, zone);
       if (inserted) continue;
-      lies.push_back("signature " + std::to_string(node.id) + " is in zone " +
-                     name_of(manifest, found->second) + " and in zone " + name_of(manifest, zone));
+      contradictions.push_back("signature " + std::to_string(node.id) + " is in zone " +
+                               name_of(manifest, found->second) + " and in zone " +
+                               name_of(manifest, zone));
     }
   }
   return zone_of;
 }
 
 void check_edges(const fb::Manifest& manifest, const Packs& packs,
-                 const std::map<std::int32_t, std::uint32_t>& zone_of, Lies& lies) {
+                 const std::map<std::int32_t, std::uint32_t>& zone_of,
+                 Contradictions& contradictions) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> found;
   for (std::uint32_t zone = 0; zone < packs.size(); ++zone) {
     for (const auto& [from, to] : packs[zone]->links) {
@@ -55,19 +53,19 @@ void check_edges(const fb::Manifest& manifest, const Packs& packs,
       const auto links = found.extract({edge->zone_a(), edge->zone_b()});
       const std::uint32_t held = links.empty() ? 0 : links.mapped();
       if (held == edge->links()) continue;
-      lies.push_back("says " + std::to_string(edge->links()) + " links between " +
-                     text(edge->zone_a(), edge->zone_b()) + ", the packs hold " +
-                     std::to_string(held));
+      contradictions.push_back("says " + std::to_string(edge->links()) + " links between " +
+                               text(edge->zone_a(), edge->zone_b()) + ", the packs hold " +
+                               std::to_string(held));
     }
   }
   for (const auto& [pair, links] : found) {
-    lies.push_back("leaves out " + std::to_string(links) + " links between " +
-                   text(pair.first, pair.second));
+    contradictions.push_back("leaves out " + std::to_string(links) + " links between " +
+                             text(pair.first, pair.second));
   }
 }
 
 double snap_of(const fb::Manifest& manifest) {
-  const std::string options = text_of(manifest.provenance()->options());
+  const std::string options = flatbuffers::GetString(manifest.provenance()->options());
   const std::size_t at = options.find("snap=");
   double snap = kDefaultSnap_m;
   if (at != options.npos) {
@@ -76,15 +74,16 @@ double snap_of(const fb::Manifest& manifest) {
   return snap;
 }
 
-void check_portals(const fb::Manifest& manifest, Lies& lies) {
+void check_portals(const fb::Manifest& manifest, Contradictions& contradictions) {
   if (manifest.portals() == nullptr) return;
   constexpr double kRounding_m = 1e-6;
   const double reach = snap_of(manifest) + kRounding_m;
   std::vector<std::uint32_t> count(manifest.zones()->size());
   std::string previous;
   for (const fb::Portal* portal : *manifest.portals()) {
-    const std::string name = text_of(portal->name());
-    if (name <= previous) lies.push_back("portal '" + name + "' is out of order or has no name");
+    const std::string name = flatbuffers::GetString(portal->name());
+    if (name <= previous)
+      contradictions.push_back("portal '" + name + "' is out of order or has no name");
     previous = name;
     for (const std::uint32_t zone : {portal->zone_a(), portal->zone_b()}) {
       ++count[zone];
@@ -92,26 +91,28 @@ void check_portals(const fb::Manifest& manifest, Lies& lies) {
       for (const fb::Point* end : {portal->p(), portal->q()}) {
         const double off = distance_to_border_m(polygon, {end->x(), end->y()});
         if (off <= reach) continue;
-        lies.push_back("portal '" + name + "' ends " + std::to_string(off) +
-                       " m off the border of zone " + name_of(manifest, zone));
+        contradictions.push_back("portal '" + name + "' ends " + std::to_string(off) +
+                                 " m off the border of zone " + name_of(manifest, zone));
       }
     }
   }
   for (std::uint32_t zone = 0; zone < count.size(); ++zone) {
     if (count[zone] <= kMaxPortalsPerZone) continue;
-    lies.push_back("zone " + name_of(manifest, zone) + " has " + std::to_string(count[zone]) +
-                   " portals, the format holds at most " + std::to_string(kMaxPortalsPerZone));
+    contradictions.push_back("zone " + name_of(manifest, zone) + " has " +
+                             std::to_string(count[zone]) + " portals, the format holds at most " +
+                             std::to_string(kMaxPortalsPerZone));
   }
 }
 
-// The zone-in rule among the zones as they were before they were split; parts of one zone share its
-// signatures by a rule of their own.
-void check_places(const fb::Manifest& manifest, const Packs& packs, Lies& lies) {
+// Checks the zone-in rule among the zones as they were before they were split; parts of one zone
+// share its signatures by a rule of their own.
+void check_places(const fb::Manifest& manifest, const Packs& packs,
+                  Contradictions& contradictions) {
   std::vector<PlannedZone> zones;
   for (const fb::Zone* zone : *manifest.zones()) {
     PlannedZone& planned = zones.emplace_back();
     planned.name = zone->name()->str();
-    planned.parent = text_of(zone->parent());
+    planned.parent = flatbuffers::GetString(zone->parent());
     planned.z_min_m = zone->z_min();
     planned.z_max_m = zone->z_max();
     planned.polygon = polygon_of(*zone);
@@ -137,41 +138,45 @@ void check_places(const fb::Manifest& manifest, const Packs& packs, Lies& lies) 
     if (!held.parent.empty() && (by_rule.parent == held.parent || orphans.contains(places[i].id))) {
       continue;
     }
-    lies.push_back("signature " + std::to_string(places[i].id) + " is in the pack of zone " +
-                   held.name + ", by the polygons it belongs to zone " + by_rule.name);
+    contradictions.push_back("signature " + std::to_string(places[i].id) +
+                             " is in the pack of zone " + held.name +
+                             ", by the polygons it belongs to zone " + by_rule.name);
   }
 }
 
-void check_provenance(const fb::Manifest& manifest, const Packs& packs, Lies& lies) {
+void check_provenance(const fb::Manifest& manifest, const Packs& packs,
+                      Contradictions& contradictions) {
   const fb::Provenance& provenance = *manifest.provenance();
   constexpr std::uint64_t kFeatureRowBytes = 72;
   std::uint64_t features = 0;
   for (const auto& pack : packs) features += pack ? pack->features : 0;
   if (provenance.source_feature_count() < features) {
-    lies.push_back("says the source had " + std::to_string(provenance.source_feature_count()) +
-                   " features, the packs hold " + std::to_string(features));
+    contradictions.push_back("says the source had " +
+                             std::to_string(provenance.source_feature_count()) +
+                             " features, the packs hold " + std::to_string(features));
   }
   if (provenance.source_bytes() / kFeatureRowBytes < provenance.source_feature_count()) {
-    lies.push_back("says the source had " + std::to_string(provenance.source_bytes()) +
-                   " bytes, fewer than its features alone take");
+    contradictions.push_back("says the source had " + std::to_string(provenance.source_bytes()) +
+                             " bytes, fewer than its features alone take");
   }
 }
 
 }  // namespace
 
-Lies lies_about_map(const fb::Manifest& manifest, const Packs& packs) {
-  Lies lies;
+Contradictions map_contradictions(const fb::Manifest& manifest, const Packs& packs) {
+  Contradictions contradictions;
   if (manifest.frame()->str() != "map") {
-    lies.push_back("says the frame is '" + manifest.frame()->str() + "', it is always 'map'");
+    contradictions.push_back("says the frame is '" + manifest.frame()->str() +
+                             "', it is always 'map'");
   }
-  const auto zone_of = zones_by_id(manifest, packs, lies);
+  const auto zone_of = zones_by_id(manifest, packs, contradictions);
   const bool complete = std::all_of(packs.begin(), packs.end(),
                                     [](const auto& pack) { return pack && pack->complete; });
-  if (complete) check_edges(manifest, packs, zone_of, lies);
-  check_portals(manifest, lies);
-  check_places(manifest, packs, lies);
-  check_provenance(manifest, packs, lies);
-  return lies;
+  if (complete) check_edges(manifest, packs, zone_of, contradictions);
+  check_portals(manifest, contradictions);
+  check_places(manifest, packs, contradictions);
+  check_provenance(manifest, packs, contradictions);
+  return contradictions;
 }
 
 }  // namespace zonepack::packer

@@ -7,6 +7,7 @@
 #include "packer/verify/manifest_checks.hpp"
 #include "packer/verify/pack_verifier.hpp"
 #include "platform/atomic_file.hpp"
+#include "platform/base/failure.hpp"
 #include "runtime/pack_format/limits.hpp"
 
 namespace zonepack::packer {
@@ -14,7 +15,7 @@ namespace {
 
 const std::string kManifest(kManifestName);
 
-std::string manifest_fault(const Error& error) {
+std::string manifest_problem(const Error& error) {
   switch (error.code) {
     case ErrorCode::kTruncated:
       return "the file has " + std::to_string(error.detail) +
@@ -30,13 +31,13 @@ std::string manifest_fault(const Error& error) {
       return "slots of " + std::to_string(error.detail) + " bytes, this format has " +
              std::to_string(kSlotBytes);
     default:
-      return "the manifest breaks the rules of the format: " + to_text(error);
+      return "the manifest breaks the rules of the format: " + reason_text(error);
   }
 }
 
 class MapVerifier {
  public:
-  explicit MapVerifier(const MapSource& map) : map_(map) {}
+  explicit MapVerifier(const MapFiles& map) : map_(map) {}
 
   Verdict run() {
     const fb::Manifest* const manifest = read_manifest();
@@ -56,15 +57,15 @@ class MapVerifier {
     return std::move(verdict_);
   }
 
-  // Facts are missing when the pack's frame is damaged.
+  // No facts when the header, index or tail of the pack is damaged.
   std::optional<PackFacts> check_pack(const std::string& name, const std::string& zone) {
     ++verdict_.packs;
-    Result<std::unique_ptr<FileSource>> file = map_.open(name);
+    Result<std::unique_ptr<MapFile>> file = map_.open(name);
     if (!file) {
       const bool missing = file.error().code == ErrorCode::kNotFound;
       verdict_.problems.push_back(
           {{.file = name, .zone = zone},
-           missing ? "the file is not there" : "cannot be opened: " + to_text(file.error()),
+           missing ? "the file is not there" : "cannot be opened: " + reason_text(file.error()),
            kCopyAgain});
       return std::nullopt;
     }
@@ -87,24 +88,24 @@ class MapVerifier {
   }
 
   const fb::Manifest* read_manifest() {
-    const Result<std::unique_ptr<FileSource>> file = map_.open(kManifest);
+    const Result<std::unique_ptr<MapFile>> file = map_.open(kManifest);
     if (!file) {
       const bool missing = file.error().code == ErrorCode::kNotFound;
       report({.file = kManifest},
              missing ? "the file is not there: this is no map, or its build never finished"
-                     : "cannot be opened: " + to_text(file.error()),
+                     : "cannot be opened: " + reason_text(file.error()),
              kCopyAgain);
       return nullptr;
     }
     if ((*file)->size() > kMaxManifestFileBytes) {
-      report({.file = kManifest}, manifest_fault({ErrorCode::kTooLarge, 0}), kCopyAgain);
+      report({.file = kManifest}, manifest_problem({ErrorCode::kTooLarge, 0}), kCopyAgain);
       return nullptr;
     }
     const auto size = static_cast<std::size_t>((*file)->size());
     words_.resize((size + 7) / 8);
     const auto bytes = std::as_writable_bytes(std::span(words_)).first(size);
     if (const auto read = (*file)->read_at(0, bytes); !read) {
-      report({.file = kManifest}, "cannot be read: " + to_text(read.error()), kCopyAgain);
+      report({.file = kManifest}, "cannot be read: " + reason_text(read.error()), kCopyAgain);
       return nullptr;
     }
     verdict_.bytes += bytes.size();
@@ -113,7 +114,8 @@ class MapVerifier {
     const ErrorCode code = checked.error().code;
     const bool whole = code != ErrorCode::kTruncated && code != ErrorCode::kBadMagic &&
                        code != ErrorCode::kBadChecksum && code != ErrorCode::kBadVersion;
-    report({.file = kManifest}, manifest_fault(checked.error()), whole ? kBuildAgain : kCopyAgain);
+    report({.file = kManifest}, manifest_problem(checked.error()),
+           whole ? kBuildAgain : kCopyAgain);
     return nullptr;
   }
 
@@ -125,27 +127,27 @@ class MapVerifier {
       if (!packs.back()) continue;
       const bool foreign = packs.back()->zone != name ||
                            !std::ranges::equal(packs.back()->digest, *zone->pack_digest());
-      for (const std::string& lie : lies_about_zone(manifest, *zone, *packs.back())) {
+      for (const std::string& contradiction : zone_contradictions(manifest, *zone, *packs.back())) {
         report({.file = foreign ? zone->pack()->str() : kManifest, .zone = name},
-               "the manifest " + lie, foreign ? kWrongFile : kBuildAgain);
+               "the manifest " + contradiction, foreign ? kWrongFile : kBuildAgain);
       }
       if (foreign) packs.back().reset();
     }
-    for (const std::string& lie : lies_about_map(manifest, packs)) {
-      report({.file = kManifest}, lie, kBuildAgain);
+    for (const std::string& contradiction : map_contradictions(manifest, packs)) {
+      report({.file = kManifest}, contradiction, kBuildAgain);
     }
   }
 
-  const MapSource& map_;
+  const MapFiles& map_;
   std::vector<std::uint64_t> words_;  // the manifest, aligned
   Verdict verdict_;
 };
 
 }  // namespace
 
-Verdict verify_map(const MapSource& map) { return MapVerifier(map).run(); }
+Verdict verify_map(const MapFiles& map) { return MapVerifier(map).run(); }
 
-Verdict verify_one_pack(const MapSource& folder, const std::string& name) {
+Verdict verify_one_pack(const MapFiles& folder, const std::string& name) {
   MapVerifier verifier(folder);
   verifier.check_pack(name, "");
   return std::move(verifier.verdict());

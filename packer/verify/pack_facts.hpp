@@ -13,7 +13,7 @@
 
 namespace zonepack::packer {
 
-// What a pack holds, counted from its chunks, not taken from what its index or a manifest says.
+// What a pack holds, counted from its chunks instead of taken from its index or a manifest.
 struct PackFacts {
   struct Payload {
     std::uint64_t decoded = 0, stored = 0;
@@ -31,7 +31,7 @@ struct PackFacts {
   std::vector<std::pair<fb::PayloadKind, std::uint32_t>> chunks;  // kind, decoded size
 
   bool grid_needs_scan = false;  // as the index says until `complete`
-  bool complete = false;         // everything decoded; without it, what follows is not told
+  bool complete = false;         // everything decoded; otherwise the following is unset
   std::uint64_t features = 0;
   std::vector<Node> nodes;                                   // in order
   std::vector<std::pair<std::int32_t, std::int32_t>> links;  // from, to

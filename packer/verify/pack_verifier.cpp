@@ -9,6 +9,7 @@
 
 #include "packer/decode/record_decoder.hpp"
 #include "packer/verify/chunk_checks.hpp"
+#include "platform/base/failure.hpp"
 #include "runtime/pack_format/zone_view.hpp"
 
 namespace zonepack::packer {
@@ -20,7 +21,7 @@ struct alignas(64) Slot {
 
 class PackVerifier {
  public:
-  PackVerifier(const FileSource& file, const std::string& name, Problems& problems)
+  PackVerifier(const MapFile& file, const std::string& name, Problems& problems)
       : file_(file), name_(name), problems_(problems) {}
 
   std::optional<PackFacts> run() {
@@ -50,7 +51,8 @@ class PackVerifier {
   bool read(std::uint64_t offset, std::span<std::byte> out, const char* what) {
     const Result<void> read = file_.read_at(offset, out);
     if (read) return true;
-    report_at(offset, std::string(what) + " cannot be read: " + to_text(read.error()), kCopyAgain);
+    report_at(offset, std::string(what) + " cannot be read: " + reason_text(read.error()),
+              kCopyAgain);
     return false;
   }
 
@@ -61,7 +63,7 @@ class PackVerifier {
   void check_bounds();
   void check_claims();
 
-  const FileSource& file_;
+  const MapFile& file_;
   const std::string& name_;
   Problems& problems_;
   PackTail tail_;
@@ -129,7 +131,7 @@ bool PackVerifier::read_index(ByteSpan header) {
         break;
       default:
         report_at(tail_.index_offset,
-                  "the index breaks the rules of the format: " + to_text(error) + " (" +
+                  "the index breaks the rules of the format: " + reason_text(error) + " (" +
                       std::to_string(error.detail) + ")",
                   kBuildAgain);
     }
@@ -165,7 +167,7 @@ bool PackVerifier::read_chunk(std::uint32_t place, const fb::ChunkEntry& entry) 
 
   std::vector<std::byte> stored(entry.stored_size());
   if (const Result<void> read = file_.read_at(entry.offset(), stored); !read) {
-    return fail("the stored bytes cannot be read: " + to_text(read.error()), kCopyAgain);
+    return fail("the stored bytes cannot be read: " + reason_text(read.error()), kCopyAgain);
   }
   const bool accident = xxh3(stored) != entry.xxh3();
   const Digest16 digest = blake2b_16(stored);
@@ -179,18 +181,18 @@ bool PackVerifier::read_chunk(std::uint32_t place, const fb::ChunkEntry& entry) 
                     " that the index holds",
                 kCopyAgain);
   }
-  if (kind == nullptr) return true;  // of a newer version: nothing more is known
+  if (kind == nullptr) return true;  // of a newer version: nothing more can be checked
   auto slot = std::make_unique_for_overwrite<Slot>();
   const Result<ByteSpan> decoded = decode_chunk(entry, stored, slot->bytes);
   if (!decoded) {
     return fail(
         decoded.error().code == ErrorCode::kBadCompression
             ? "the LZ4 block does not decode to " + std::to_string(entry.decoded_size()) + " bytes"
-            : "the decoded chunk breaks the rules of the format: " + to_text(decoded.error()),
+            : "the decoded chunk breaks the rules of the format: " + reason_text(decoded.error()),
         kBuildAgain);
   }
-  if (const auto fault = find_fault(entry, *decoded)) {
-    return fail("the decoded chunk " + *fault, kBuildAgain);
+  if (const auto problem = find_chunk_problem(entry, *decoded)) {
+    return fail("the decoded chunk " + *problem, kBuildAgain);
   }
   refers_to_scan_ = refers_to_scan_ || refers_to_scan(entry, *decoded);
   chunks_.push_back({entry.kind(), *decoded});
@@ -250,7 +252,7 @@ void PackVerifier::check_claims() {
 void PackVerifier::check_bounds() {
   for (std::uint32_t i = 0; i < index_->chunks()->size(); ++i) {
     const fb::ChunkEntry& entry = *index_->chunks()->Get(i);
-    if (entry.last_signature() >= facts_.nodes.size()) continue;  // told by check_claims()
+    if (entry.last_signature() >= facts_.nodes.size()) continue;  // reported by check_claims()
     const auto position = [this](std::uint32_t ordinal) {
       const Transform& T = facts_.nodes[ordinal].T_map_base;
       return std::pair(T[3], T[7]);
@@ -276,7 +278,7 @@ void PackVerifier::check_bounds() {
 
 }  // namespace
 
-std::optional<PackFacts> verify_pack(const FileSource& file, const std::string& name,
+std::optional<PackFacts> verify_pack(const MapFile& file, const std::string& name,
                                      Problems& problems) {
   return PackVerifier(file, name, problems).run();
 }

@@ -42,12 +42,9 @@ nlohmann::ordered_json to_json(const Problem& problem) {
   return json;
 }
 
-std::string to_text(const Error& error) {
-  std::string text = zonepack::to_string(error.code);
-  if (error.code == ErrorCode::kIo) {
-    text += std::string(" (") + std::strerror(static_cast<int>(error.detail)) + ")";
-  }
-  return text;
+std::string kind_text(fb::PayloadKind kind) {
+  const char* const word = zonepack::to_string(kind);
+  return word == nullptr ? std::to_string(static_cast<int>(kind)) : word;
 }
 
 }  // namespace zonepack::packer

@@ -14,7 +14,7 @@ namespace zonepack::packer {
 
 struct Location {
   std::string file = {};                     // name in the map's folder
-  std::string zone = {};                     // empty while it is not known
+  std::string zone = {};                     // empty while unknown
   std::optional<std::uint32_t> chunk = {};   // place in the pack's index
   std::string kind = {};                     // payload kind of the chunk
   std::optional<std::uint64_t> offset = {};  // bytes from the start of the file
@@ -28,14 +28,14 @@ struct Problem {
 
 using Problems = std::vector<Problem>;
 
-// For bytes that are not those which were written.
+// For bytes that are not the ones that were written.
 inline constexpr const char* kCopyAgain =
     "copy this file again from where the map was built, or build the map again";
-// For a whole file that belongs elsewhere.
+// For an intact file of another map or version.
 inline constexpr const char* kWrongFile =
     "the pack is of another map or version: copy the folder again from where this manifest was "
     "written";
-// For whole files that contradict themselves: no accident of storage does that.
+// For intact files that contradict themselves, which no storage fault explains.
 inline constexpr const char* kBuildAgain =
     "the checksums hold, so it was written like this: build the map again with this version";
 
@@ -44,7 +44,7 @@ std::string to_string(const Problem& problem);
 
 nlohmann::ordered_json to_json(const Problem& problem);
 
-// "i/o error (Input/output error)", "truncated".
-std::string to_text(const Error& error);
+// "features", or the number of a kind that this version does not know.
+std::string kind_text(fb::PayloadKind kind);
 
 }  // namespace zonepack::packer

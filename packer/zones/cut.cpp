@@ -53,16 +53,16 @@ bool nearer_to_x(const Axis& a, const Axis& b) noexcept {
   return std::abs(a.ux) > std::abs(b.ux) + kEqual;
 }
 
-// Where an outline passes the cut.
-struct Pass {
-  double across = 0;  // place along the cut
+// Where an outline crosses the cut.
+struct Crossing {
+  double across = 0;  // position along the cut
   Point2 point;
   bool up = false;      // from below to above
   std::size_t run = 0;  // the run of vertices that begins here
 };
 
-// Vertices on one side of the cut, from the pass where the outline enters the side to where it
-// leaves.
+// The vertices on one side of the cut, from the crossing where the outline enters the side to the
+// one where it leaves.
 struct Run {
   std::size_t enter = 0, leave = 0;  // places in the sorted list of passes
   Ring vertices;
@@ -81,19 +81,19 @@ class Cutter {
       (above(0) ? above_ : below_).whole.emplace_back(ring, hole);
       return;
     }
-    const std::size_t first_pass = passes_.size();
+    const std::size_t first_crossing = crossings_.size();
     for (std::size_t i = first; i < first + n; ++i) {
       if (above(i) != above(i + 1)) {
-        passes_.push_back(pass(ring[i % n], ring[(i + 1) % n], runs_.size()));
-        runs_.push_back({passes_.size() - 1, passes_.size(), {}});
+        crossings_.push_back(crossing(ring[i % n], ring[(i + 1) % n], runs_.size()));
+        runs_.push_back({crossings_.size() - 1, crossings_.size(), {}});
       }
       runs_.back().vertices.push_back(ring[(i + 1) % n]);
     }
-    runs_.back().leave = first_pass;
+    runs_.back().leave = first_crossing;
   }
 
   Pieces pieces() {
-    sort_passes();
+    sort_crossings();
     trace(false, below_);
     trace(true, above_);
     return {assembled(below_), assembled(above_)};
@@ -105,54 +105,55 @@ class Cutter {
     std::vector<Polygon> polygons;
   };
 
-  Pass pass(Point2 p, Point2 q, std::size_t run) const {
+  Crossing crossing(Point2 p, Point2 q, std::size_t run) const {
     const double from = axis_.at(p), to = axis_.at(q);
     const double t = (place_ - from) / (to - from);
     const Point2 point{p.x_m + t * (q.x_m - p.x_m), p.y_m + t * (q.y_m - p.y_m)};
     return {axis_.across().at(point), point, from < to, run};
   }
 
-  void sort_passes() {
-    std::vector<std::size_t> order(passes_.size()), place(passes_.size());
+  void sort_crossings() {
+    std::vector<std::size_t> order(crossings_.size()), place(crossings_.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return passes_[a].across < passes_[b].across; });
-    // With the interior on the left, the inside of the polygon begins at every upward pass. Only
-    // two passes at one place, at the tip of a needle, can come in the wrong order.
-    const auto fits = [&](std::size_t i) { return passes_[order[i]].up == (i % 2 == 0); };
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return crossings_[a].across < crossings_[b].across;
+    });
+    // With the interior on the left, the inside of the polygon begins at every upward crossing.
+    // Only two crossings at one point, at the tip of a needle, can be in the wrong order.
+    const auto fits = [&](std::size_t i) { return crossings_[order[i]].up == (i % 2 == 0); };
     for (std::size_t i = 0; i + 1 < order.size(); ++i) {
       if (!fits(i)) std::swap(order[i], order[i + 1]);
     }
-    std::vector<Pass> sorted;
+    std::vector<Crossing> sorted;
     for (std::size_t i = 0; i < order.size(); ++i) {
       if (!fits(i)) {
         throw std::runtime_error("an outline cannot be cut at " +
-                                 point_text(passes_[order[i]].point) +
+                                 point_text(crossings_[order[i]].point) +
                                  ", where its edges run into each other; simplify it there");
       }
       place[order[i]] = i;
-      sorted.push_back(passes_[order[i]]);
+      sorted.push_back(crossings_[order[i]]);
     }
-    passes_ = std::move(sorted);
+    crossings_ = std::move(sorted);
     for (Run& run : runs_) {
       run.enter = place[run.enter];
       run.leave = place[run.leave];
     }
   }
 
-  // Follows runs on one side; from where one leaves it, the cut leads to the neighbouring pass.
+  // Follows the runs on one side; where one leaves it, the cut leads to the neighbouring crossing.
   void trace(bool above, SidePieces& side) {
-    std::vector<bool> done(passes_.size());
-    for (std::size_t start = 0; start < passes_.size(); ++start) {
-      if (passes_[start].up != above || done[start]) continue;
+    std::vector<bool> done(crossings_.size());
+    for (std::size_t start = 0; start < crossings_.size(); ++start) {
+      if (crossings_[start].up != above || done[start]) continue;
       Ring ring;
       std::size_t at = start;
       do {
         done[at] = true;
-        const Run& run = runs_[passes_[at].run];
-        ring.push_back(passes_[at].point);
+        const Run& run = runs_[crossings_[at].run];
+        ring.push_back(crossings_[at].point);
         ring.insert(ring.end(), run.vertices.begin(), run.vertices.end());
-        ring.push_back(passes_[run.leave].point);
+        ring.push_back(crossings_[run.leave].point);
         at = run.leave ^ 1u;
       } while (at != start);
       side.polygons.push_back({std::move(ring), {}});
@@ -180,7 +181,7 @@ class Cutter {
 
   const Axis axis_;
   const double place_;
-  std::vector<Pass> passes_;
+  std::vector<Crossing> crossings_;
   std::vector<Run> runs_;
   SidePieces below_, above_;
 };

@@ -8,16 +8,16 @@
 // Cutting a polygon by straight lines. Metres in the map frame.
 namespace zonepack::packer {
 
-// A unit vector; lines across it are named by their place along it, `at(p) = p . u`.
+// A unit vector u. A line across it is identified by its position along it, `at(p) = p . u`.
 struct Axis {
   double ux = 1, uy = 0;
   double at(Point2 p) const noexcept { return p.x_m * ux + p.y_m * uy; }
   Axis across() const noexcept { return {-uy, ux}; }
 };
 
-// The length of a polygon: the longer side of its bounding rectangle of least area, pointing to
-// greater x (straight north when there is no x in it). Between rectangles of equal area, and in a
-// square, the direction nearer to x.
+// The direction of a polygon's length: the longer side of its bounding rectangle of least area,
+// pointing to greater x (to greater y when it is parallel to y). Among rectangles of equal area,
+// and in a square, the direction nearer to x.
 Axis length_of(const Polygon& polygon);
 
 struct Pieces {
@@ -25,13 +25,13 @@ struct Pieces {
 };
 
 // Cuts along the line { p : axis.at(p) = place }. Each piece is connected and keeps its interior on
-// the left; a part that comes away in several pieces (a U cut through both legs) gives several.
-// Both sides of the cut get the very same points. No vertex may lie on the line: see
+// the left; a side that falls apart (a U cut through both legs) gives several.
+// Both sides of the cut get exactly the same points. No vertex may lie on the line: see
 // place_between().
 Pieces cut(const Polygon& polygon, const Axis& axis, double place);
 
-// A place between `from` and `to` where no vertex stands: their middle or, when a vertex is within
-// a tenth of the gap of it, the middle of the widest stretch without vertices.
+// A position between `from` and `to` without a vertex: their middle or, when a vertex is within a
+// tenth of the gap of it, the middle of the widest stretch without vertices.
 double place_between(const Polygon& polygon, const Axis& axis, double from, double to);
 
 }  // namespace zonepack::packer

@@ -14,10 +14,10 @@ namespace {
 
 using nlohmann::json;
 
-// One feature under reading: its properties, and faults that name it.
-class FeatureReader {
+// One feature being read: its properties, and the faults that name it.
+class DrawnFeature {
  public:
-  FeatureReader(const Feature& feature, Findings& findings)
+  DrawnFeature(const GeoJsonFeature& feature, Findings& findings)
       : feature_(feature), findings_(findings) {
     if (const auto it = feature.value.find("properties");
         it != feature.value.end() && it->is_object()) {
@@ -134,7 +134,7 @@ class FeatureReader {
   }
 
  private:
-  const Feature& feature_;
+  const GeoJsonFeature& feature_;
   Findings& findings_;
   json properties_ = json::object();
   json geometry_ = json::object();
@@ -142,16 +142,16 @@ class FeatureReader {
   std::string name_;
 };
 
-// The name as given; faults when it cannot be used.
-std::string fit_name(FeatureReader& reader, const std::string& kind, std::string name) {
+// The name as given; reports a fault when it cannot be used.
+std::string fit_name(DrawnFeature& reader, const std::string& kind, std::string name) {
   reader.call_it(kind, name);
-  if (const std::string why = why_unfit_name(name); !why.empty()) {
-    reader.fault("has an unfit name: " + why);
+  if (const auto problem = find_name_problem(name)) {
+    reader.fault("has an unfit name: " + *problem);
   }
   return name;
 }
 
-void read_outline(FeatureReader& reader, DrawnZone& drawn) {
+void read_outline(DrawnFeature& reader, DrawnZone& drawn) {
   const json& rings = reader.coordinates();
   if (!rings.is_array() || rings.empty()) {
     reader.fault("has a Polygon without coordinates; draw its outline");
@@ -171,7 +171,7 @@ void read_outline(FeatureReader& reader, DrawnZone& drawn) {
   drawn.zone.polygon = with_interior_on_the_left(std::move(polygon));
 }
 
-void read_zone(const Feature& feature, FeatureReader& reader, Drawing& drawing) {
+void read_zone(const GeoJsonFeature& feature, DrawnFeature& reader, Drawing& drawing) {
   DrawnZone drawn{feature.index, feature.line, {}, false};
   PlannedZone& zone = drawn.zone;
   reader.call_it_nameless("zone");
@@ -198,8 +198,8 @@ void read_zone(const Feature& feature, FeatureReader& reader, Drawing& drawing) 
   drawing.zones.push_back(std::move(drawn));
 }
 
-// A portal may have its name from the feature's id.
-std::string portal_name_given(const Feature& feature, FeatureReader& reader) {
+// A portal without a name property takes the feature's id.
+std::string portal_name_given(const GeoJsonFeature& feature, DrawnFeature& reader) {
   std::string name = reader.text("name");
   if (!name.empty()) return name;
   const auto id = feature.value.find("id");
@@ -208,7 +208,7 @@ std::string portal_name_given(const Feature& feature, FeatureReader& reader) {
   return id->is_number_integer() ? id->dump() : "";
 }
 
-void read_portal(const Feature& feature, FeatureReader& reader, Drawing& drawing) {
+void read_portal(const GeoJsonFeature& feature, DrawnFeature& reader, Drawing& drawing) {
   ++drawing.portal_features;
   DrawnPortal portal{feature.index, feature.line, portal_name_given(feature, reader), {}, {}};
   reader.call_it_nameless("portal");
@@ -238,7 +238,7 @@ void read_portal(const Feature& feature, FeatureReader& reader, Drawing& drawing
   if (linked) drawing.portals.push_back(std::move(portal));
 }
 
-void read_line(const Feature& feature, FeatureReader& reader, Drawing& drawing) {
+void read_line(const GeoJsonFeature& feature, DrawnFeature& reader, Drawing& drawing) {
   const json* portal = reader.property("portal");
   if (portal != nullptr && *portal == true) {
     read_portal(feature, reader, drawing);
@@ -253,10 +253,10 @@ void read_line(const Feature& feature, FeatureReader& reader, Drawing& drawing) 
 
 }  // namespace
 
-Drawing read_drawing(const std::vector<Feature>& features, Findings& findings) {
+Drawing read_drawing(const std::vector<GeoJsonFeature>& features, Findings& findings) {
   Drawing drawing;
-  for (const Feature& feature : features) {
-    FeatureReader reader(feature, findings);
+  for (const GeoJsonFeature& feature : features) {
+    DrawnFeature reader(feature, findings);
     const std::string type = reader.geometry_type();
     if (type == "Polygon") {
       read_zone(feature, reader, drawing);

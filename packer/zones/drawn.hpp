@@ -10,19 +10,19 @@
 #include "packer/zones/geojson.hpp"
 #include "packer/zones/zone_plan.hpp"
 
-// Inside of the zone file reader: features as drawn, before zones and portals are held against each
-// other.
+// Part of the zone file reader: features as drawn, before zones and portals are checked against
+// each other.
 namespace zonepack::packer {
 
 struct DrawnZone {
   std::size_t feature = 0, line = 0;
   PlannedZone zone;
-  bool sound = false;  // its outline can be used
+  bool sound = false;  // its outline is usable
 };
 
 struct DrawnPortal {
   std::size_t feature = 0, line = 0;
-  std::string name;  // empty: to be given
+  std::string name;  // empty: not named yet
   std::array<std::string, 2> zones;
   Segment2 segment;
 };
@@ -30,10 +30,10 @@ struct DrawnPortal {
 struct Drawing {
   std::vector<DrawnZone> zones;
   std::vector<DrawnPortal> portals;
-  std::size_t portal_features = 0;  // also those that are faulty
+  std::size_t portal_features = 0;  // including faulty ones
 };
 
-// Reads each feature for itself; what is wrong with it becomes a fault.
-Drawing read_drawing(const std::vector<Feature>& features, Findings& findings);
+// Reads each feature on its own; every error becomes a fault.
+Drawing read_drawing(const std::vector<GeoJsonFeature>& features, Findings& findings);
 
 }  // namespace zonepack::packer

@@ -8,22 +8,22 @@
 
 #include "runtime/pack_format/file/geometry.hpp"
 
-// What is wrong with a zone file, said so that it can be mended without reading this program.
+// What is wrong with a zone file, in messages that suffice to correct it.
 namespace zonepack::packer {
 
 struct Finding {
-  std::optional<std::size_t> feature;  // place in the file's list, from 0; nullopt: the file itself
+  std::optional<std::size_t> feature;  // index in the file's list, from 0; nullopt: the file itself
   std::size_t line = 0;                // where the feature begins, from 1; 0: unknown
   std::string name;                    // zone or portal; empty when it has none
   std::string message;                 // complete: what was found, what was expected, what to do
 };
 
 struct Findings {
-  std::vector<Finding> faults;    // the file is refused
-  std::vector<Finding> warnings;  // it is taken, and somebody should look
+  std::vector<Finding> faults;    // the file is rejected
+  std::vector<Finding> warnings;  // the file is accepted, but a person should look at it
 };
 
-// "FILE:LINE: message", without what is unknown.
+// "FILE:LINE: message", without the line when unknown.
 std::string to_string(const Finding& finding, const std::string& file);
 
 // Every fault on its own line, under a heading that counts them.

@@ -12,11 +12,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMaxDepth =
-    64;  // GeoJSON needs 8; copying and printing a value take stack for each level
+// GeoJSON needs 8 levels; copying and printing a value take stack for each one.
+constexpr int kMaxDepth = 64;
 struct TooDeep {};
 
-// Hands the text to the JSON parser and counts the lines that it has taken.
+// Feeds the text to the JSON parser and counts the lines consumed.
 class LineCountingIterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -45,10 +45,10 @@ class LineCountingIterator {
   std::size_t* line_;
 };
 
-// Follows the parser: where each feature begins, and which keys stand twice.
-class Follower {
+// Watches the parser: records where each feature begins, and reports duplicate keys.
+class ParseObserver {
  public:
-  Follower(const std::size_t& line, Findings& findings) : line_(line), findings_(findings) {}
+  ParseObserver(const std::size_t& line, Findings& findings) : line_(line), findings_(findings) {}
 
   bool operator()(int depth, json::parse_event_t event, const json& parsed) {
     if (depth > kMaxDepth) throw TooDeep{};
@@ -91,7 +91,7 @@ class Follower {
   std::vector<std::size_t> feature_lines_;
 };
 
-// nlohmann's text without its "[json.exception.…]" mark and without the position, which we give.
+// nlohmann's message without its "[json.exception.…]" mark and line, which the finding has.
 std::string plain_reason(const std::string& what) {
   std::size_t from = what.find("] ");
   from = from == std::string::npos ? 0 : from + 2;
@@ -103,18 +103,18 @@ std::string plain_reason(const std::string& what) {
 
 }  // namespace
 
-std::vector<Feature> read_features(std::string_view text, Findings& findings) {
+std::vector<GeoJsonFeature> read_features(std::string_view text, Findings& findings) {
   const auto fault = [&](std::size_t line, std::string message) {
     findings.faults.push_back({std::nullopt, line, "", std::move(message)});
   };
   std::size_t line = 1;
-  Follower follower(line, findings);
+  ParseObserver observer(line, findings);
   json root;
   try {
     root = json::parse(LineCountingIterator(text.data(), &line),
                        LineCountingIterator(text.data() + text.size(), &line),
                        [&](int depth, json::parse_event_t event, json& parsed) {
-                         return follower(depth, event, parsed);
+                         return observer(depth, event, parsed);
                        });
   } catch (const TooDeep&) {
     fault(line,
@@ -138,11 +138,11 @@ std::vector<Feature> read_features(std::string_view text, Findings& findings) {
     fault(1, "expected \"features\": [ … ], the list of zones and portals");
     return {};
   }
-  std::vector<Feature> features;
+  std::vector<GeoJsonFeature> features;
   std::size_t objects = 0;
   for (std::size_t i = 0; i < list->size(); ++i) {
     json& value = (*list)[i];
-    const std::size_t at = value.is_object() ? follower.feature_lines().at(objects++) : 0;
+    const std::size_t at = value.is_object() ? observer.feature_lines().at(objects++) : 0;
     if (value.is_object() && value.value("type", json()) == "Feature") {
       features.push_back({i, at, std::move(value)});
     } else {

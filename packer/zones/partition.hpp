@@ -13,16 +13,21 @@
 // Which zone each signature belongs to (K_z = {k in K : k in z}, arXiv 2512.12228).
 //
 // The rule, for the base position (x, y, z) of a signature in the map:
-//   1. Only zones whose z range holds z are looked at (z_min <= z < z_max; a zone without bounds
-//   holds
-//      every height). Floors that lie above each other are told apart in this way only.
-//   2. Inside a zone beats standing on the border of another (side_of: within 1e-9 m of an edge).
-//   3. Of several zones that hold it inside, or of several on whose border it stands, it goes to
-//   the
-//      one whose name sorts first by bytes.
-//   4. In no zone, it is an orphan. The nearest zone is the one whose border is nearest, of equally
-//      near ones the first by name; zones of the right height come first if there are any.
-// Every signature is thus in exactly one zone, whatever the order of zones and signatures.
+//
+// 1. Only zones whose z range contains z count (z_min <= z < z_max; a zone without bounds contains
+//    every height). Nothing else separates floors above each other.
+//
+// 2. Inside a zone takes precedence over on the border of one (side_of: within 1e-9 m of an edge).
+//
+// 3. Among several zones that have it inside, or several that have it on their border, the zone
+// whose
+//    name sorts first by bytes gets it.
+//
+// 4. In no zone, it is an orphan. Its nearest zone is the one with the nearest border, among
+// equally
+//    near ones the first by name; zones of the right height, if any, come first.
+//
+// So every signature is in at most one zone, whatever the order of zones and signatures.
 namespace zonepack::packer {
 
 struct SignaturePlace {
@@ -40,7 +45,7 @@ enum class OrphanPolicy : std::uint8_t {
 struct Orphan {
   SignatureId id = 0;
   Point2 p_map;
-  std::uint32_t nearest_zone = 0;  // place in the list of zones
+  std::uint32_t nearest_zone = 0;  // index in the list of zones
   double distance_m = 0;           // to its border
 };
 
@@ -48,12 +53,12 @@ struct Partition {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> zone_of;   // per signature, in input order; kNone: dropped
   std::vector<std::size_t> signatures;  // per zone
-  std::vector<Orphan> orphans;          // in input order, whatever the policy did with them
-  std::size_t on_border = 0;            // signatures that rule 2 and 3 placed from a border
+  std::vector<Orphan> orphans;          // in input order, under every policy
+  std::size_t on_border = 0;            // signatures that rules 2 and 3 assigned from a border
 };
 
-// `zones` sorted by name and not empty. Throws std::runtime_error for a position that is not finite
-// and, under kError, for orphans. O(signatures x vertices of zones whose box is near).
+// `zones` must be sorted by name and not empty. Throws std::runtime_error for a position that is
+// not finite and, under kError, for orphans. O(signatures x vertices of zones with a near box).
 Partition partition(std::span<const PlannedZone> zones, std::span<const SignaturePlace> signatures,
                     OrphanPolicy policy);
 

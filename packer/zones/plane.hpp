@@ -10,12 +10,12 @@
 // Plane geometry that only the packer needs. Metres in the map frame.
 namespace zonepack::packer {
 
-// Where two segments cross or touch (within kBorderTolerance_m); where they overlap, one of the
-// points.
+// Where two segments cross or touch (within kBorderTolerance_m); one of the common points where
+// they overlap.
 std::optional<Point2> meeting_point(const Segment2& a, const Segment2& b) noexcept;
 
-// Two edges of one ring that meet although they are not neighbours, or neighbours that fold back
-// onto each other. Edge i runs from vertex i to the next.
+// Two edges of one ring that meet without being neighbours, or neighbours that fold back onto each
+// other. Edge i runs from vertex i to the next.
 struct SelfCrossing {
   std::size_t edge_a = 0, edge_b = 0;
   Point2 at;
@@ -24,7 +24,7 @@ struct SelfCrossing {
 // In the order of the edges; empty for a simple ring. O(n^2).
 std::vector<SelfCrossing> self_crossings(const Ring& ring);
 
-// Square metres that two polygons have in common, non-convex and with holes. The plane is cut into
+// The common area of two polygons, which may be non-convex and have holes. The plane is cut into
 // horizontal strips at every vertex and at every crossing of the two outlines: between them no
 // edges cross, so the common width is linear in y and the width at half height times the height is
 // exact up to rounding. Each polygon must not cross itself.

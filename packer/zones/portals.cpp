@@ -115,7 +115,7 @@ class PortalPlacer {
   Findings& findings_;
   std::map<std::string, std::uint32_t> zone_at_;
   std::set<std::string> drawn_names_;
-  std::map<std::string, std::size_t> first_named_;  // the feature that has each portal name first
+  std::map<std::string, std::size_t> first_named_;  // the first feature with each portal name
   std::set<std::string> taken_;                     // portal names
   const DrawnPortal* drawn_ = nullptr;
 };

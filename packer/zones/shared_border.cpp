@@ -13,12 +13,12 @@ namespace zonepack::packer {
 namespace {
 
 constexpr double kMaxSlope = 0.268;     // tan(15 degrees)
-constexpr double kLeastPiece_m = 1e-9;  // shorter than this is a touch at a corner
+constexpr double kLeastPiece_m = 1e-9;  // anything shorter is a touch at a corner
 constexpr double kCollinear_m = 1e-6;   // pieces this close to one line are one piece
 
 double length(const Segment2& s) noexcept { return distance_m(s.p, s.q); }
 
-// Rounding must not invent coordinates: what is nearly a vertex is the vertex.
+// Rounding must not invent coordinates: a point next to a vertex becomes the vertex.
 Point2 at_vertex(Point2 p, const Segment2& a, const Segment2& b) noexcept {
   for (const Point2 v : {a.p, a.q, b.p, b.q}) {
     if (distance_m(p, v) <= kBorderTolerance_m) return v;
@@ -26,7 +26,7 @@ Point2 at_vertex(Point2 p, const Segment2& a, const Segment2& b) noexcept {
   return p;
 }
 
-// The part of edge a beside which edge b runs the other way, moved half way towards b.
+// The part of edge a along which edge b runs in the opposite direction, moved halfway to b.
 std::optional<Segment2> shared_piece(const Segment2& a, const Segment2& b, double separation_m) {
   const double length_a = length(a);
   if (length_a == 0) return std::nullopt;
@@ -58,7 +58,8 @@ std::optional<Segment2> shared_piece(const Segment2& a, const Segment2& b, doubl
   return Segment2{midway(from), midway(to)};
 }
 
-// One segment for two that continue or overlap each other in one line; it runs the way of a.
+// Joins two segments that continue or overlap each other in one line; the result has the direction
+// of a.
 std::optional<Segment2> joined(const Segment2& a, const Segment2& b) {
   const std::array<Point2, 4> ends{a.p, a.q, b.p, b.q};
   Segment2 whole = a;

@@ -38,7 +38,8 @@ std::vector<Gap> choose_cuts(std::span<const Weight> weights, ByteCount limit, d
   const std::size_t count = groups.size();
   const auto before = [&](std::size_t i) { return i < count ? groups[i].before : total; };
 
-  // end[i]: where a slab that begins with group i must end; slabs[i]: how few do from there on.
+  // end[i]: where a slab that begins with group i must end; slabs[i]: the fewest slabs from there
+  // on.
   std::vector<std::size_t> end(count + 1, count), slabs(count + 1, 0);
   for (std::size_t i = count, j = count; i-- > 0;) {
     while (j > i + 1 && before(j) - before(i) > limit) --j;

@@ -18,11 +18,11 @@ namespace zonepack::packer {
 namespace {
 
 constexpr double kSeam_m = 1e-6;         // parts touch along a cut exactly, up to rounding
-constexpr double kLeastPortal_m = 1e-3;  // a shorter rest of a portal goes with its neighbour
+constexpr double kLeastPortal_m = 1e-3;  // a shorter rest of a portal joins its neighbour
 constexpr std::size_t kSignaturesNamed = 10;
 
-// What became of one zone: its parts stand in the new plan from `first` on.
-struct Outcome {
+// The parts of one zone: a range of the new plan's zones.
+struct PartRange {
   std::uint32_t first = 0, count = 0;
   std::vector<Segment2> seams;
 };
@@ -37,10 +37,10 @@ Point2 between(const Segment2& s, double t) noexcept {
   return {s.p.x_m + t * (s.q.x_m - s.p.x_m), s.p.y_m + t * (s.q.y_m - s.p.y_m)};
 }
 
-// Where along a portal, from 0 to 1, the zone behind it was cut.
+// Where along a portal, from 0 to 1, the zone was cut.
 std::vector<double> stops_along(const Segment2& portal, const Polygon& zone,
                                 const std::vector<Segment2>& seams) {
-  double reach = 0;  // a cut ends on the zone's border, and the portal may stand off it
+  double reach = 0;  // a cut ends on the zone's border, but the portal may be off it
   for (const double t : {0.0, 0.5, 1.0}) {
     reach = std::max(reach, distance_to_border_m(zone, between(portal, t)));
   }
@@ -120,16 +120,16 @@ class PlanSplitter {
       members.push_back({signatures_[i], weights_[i]});
       weight += weights_[i];
     }
-    outcomes_.push_back({static_cast<std::uint32_t>(zones().size()), 1, {}});
+    ranges_.push_back({static_cast<std::uint32_t>(zones().size()), 1, {}});
     if (weight <= limit_) {
-      for (const std::size_t i : indices) result_.zone_of[i] = outcomes_.back().first;
+      for (const std::size_t i : indices) result_.zone_of[i] = ranges_.back().first;
       zones().push_back(whole);
       return;
     }
     ZoneParts cut = parts_of(whole.polygon, members, limit_);
     note_heaviest(whole.name, cut.heaviest);
     std::vector<Polygon>& parts = cut.polygons;
-    outcomes_.back().count = static_cast<std::uint32_t>(parts.size());
+    ranges_.back().count = static_cast<std::uint32_t>(parts.size());
     result_.split.push_back({whole.name, parts.size(), weight, cut.narrow_limit});
     for (std::size_t i = 0; i < parts.size(); ++i) {
       zones().push_back(whole);
@@ -137,15 +137,15 @@ class PlanSplitter {
       zones().back().parent = whole.name;
       zones().back().polygon = std::move(parts[i]);
     }
-    give_out(indices, outcomes_.back());
-    join_parts(outcomes_.back());
+    give_out(indices, ranges_.back());
+    join_parts(ranges_.back());
   }
 
   std::string part_name(const std::string& zone, std::size_t number) {
     std::string name = zone + "." + std::to_string(number);
-    if (const std::string why = why_unfit_name(name); !why.empty()) {
+    if (const auto problem = find_name_problem(name)) {
       throw std::runtime_error("zone '" + zone + "' cannot be split: the name of its part '" +
-                               name + "' is unfit: " + why + "; give the zone a shorter name");
+                               name + "' is unfit: " + *problem + "; give the zone a shorter name");
     }
     if (!zone_names_.insert(name).second) {
       throw std::runtime_error("zone '" + zone + "' cannot be split: there is a zone '" + name +
@@ -154,10 +154,10 @@ class PlanSplitter {
     return name;
   }
 
-  // The rule of partition.hpp among the parts, which it takes sorted by name.
-  void give_out(const std::vector<std::size_t>& indices, const Outcome& outcome) {
+  // Applies the rule of partition.hpp to the parts, which it needs sorted by name.
+  void give_out(const std::vector<std::size_t>& indices, const PartRange& range) {
     std::vector<std::uint32_t> order;
-    for (std::uint32_t i = 0; i < outcome.count; ++i) order.push_back(outcome.first + i);
+    for (std::uint32_t i = 0; i < range.count; ++i) order.push_back(range.first + i);
     std::sort(order.begin(), order.end(),
               [&](std::uint32_t a, std::uint32_t b) { return zones()[a].name < zones()[b].name; });
     std::vector<PlannedZone> parts;
@@ -170,29 +170,29 @@ class PlanSplitter {
     }
   }
 
-  void join_parts(Outcome& outcome) {
-    const std::uint32_t end = outcome.first + outcome.count;
-    for (std::uint32_t a = outcome.first; a < end; ++a) {
+  void join_parts(PartRange& range) {
+    const std::uint32_t end = range.first + range.count;
+    for (std::uint32_t a = range.first; a < end; ++a) {
       for (std::uint32_t b = a + 1; b < end; ++b) {
         for (const Segment2& seam :
              shared_borders(zones()[a].polygon, zones()[b].polygon, kSeam_m, kSeam_m)) {
           std::string name = fresh_portal_name(zones()[a].name, zones()[b].name, portal_names_);
           result_.plan.portals.push_back({std::move(name), a, b, seam});
-          outcome.seams.push_back(seam);
+          range.seams.push_back(seam);
         }
       }
     }
   }
 
   std::vector<Stretch> stretches(const Segment2& portal, std::uint32_t zone) {
-    const Outcome& outcome = outcomes_[zone];
-    if (outcome.count == 1) return {{portal, outcome.first}};
-    const std::vector<double> stops = stops_along(portal, plan_.zones[zone].polygon, outcome.seams);
+    const PartRange& range = ranges_[zone];
+    if (range.count == 1) return {{portal, range.first}};
+    const std::vector<double> stops = stops_along(portal, plan_.zones[zone].polygon, range.seams);
     std::vector<Stretch> found;
     for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
       if (stops[i + 1] <= stops[i]) continue;
       const std::uint32_t part =
-          nearest_part(outcome, between(portal, (stops[i] + stops[i + 1]) / 2));
+          nearest_part(range, between(portal, (stops[i] + stops[i + 1]) / 2));
       if (!found.empty() && found.back().part == part) {
         found.back().segment.q = between(portal, stops[i + 1]);
       } else {
@@ -202,10 +202,10 @@ class PlanSplitter {
     return found;
   }
 
-  std::uint32_t nearest_part(const Outcome& outcome, Point2 point) {
-    std::uint32_t nearest = outcome.first;
+  std::uint32_t nearest_part(const PartRange& range, Point2 point) {
+    std::uint32_t nearest = range.first;
     double least = distance_to_area_m(zones()[nearest].polygon, point);
-    for (std::uint32_t part = outcome.first + 1; part < outcome.first + outcome.count; ++part) {
+    for (std::uint32_t part = range.first + 1; part < range.first + range.count; ++part) {
       const double distance = distance_to_area_m(zones()[part].polygon, point);
       if (distance < least) {
         least = distance;
@@ -239,7 +239,7 @@ class PlanSplitter {
   std::span<const ByteCount> weights_;
   const ByteCount limit_;
   std::set<std::string> zone_names_, portal_names_;
-  std::vector<Outcome> outcomes_;
+  std::vector<PartRange> ranges_;
   std::optional<Inseparable> heaviest_;
   std::string heaviest_zone_;
   SplitPlan result_;

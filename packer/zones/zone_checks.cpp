@@ -37,7 +37,7 @@ bool is_flat(const Ring& ring) noexcept {
   });
 }
 
-// Adds what is wrong with one ring; true when nothing is.
+// Adds what is wrong with one ring; true when it is sound.
 bool check_ring(const Ring& ring, const std::string& what, std::vector<std::string>& faults) {
   if (is_flat(ring)) {
     faults.push_back("has no area: its " + what + " is a line; draw around the room");

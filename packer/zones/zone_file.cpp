@@ -59,11 +59,7 @@ void warn_of_unreachable(const ZonePlan& plan, const Drawing& drawing, Findings&
 }
 
 void check_portal_counts(const ZonePlan& plan, Findings& findings) {
-  std::vector<std::size_t> portals(plan.zones.size());
-  for (const PlannedPortal& portal : plan.portals) {
-    ++portals[portal.zone_a];
-    ++portals[portal.zone_b];
-  }
+  const std::vector<std::size_t> portals = portals_per_zone(plan);
   for (std::size_t i = 0; i < portals.size(); ++i) {
     if (portals[i] <= kMaxPortalsPerZone) continue;
     const std::string& name = plan.zones[i].name;
@@ -110,7 +106,7 @@ ZoneFile load_zone_file(const std::string& path, double snap_m) {
   return file;
 }
 
-std::string why_unfit_name(std::string_view name) {
+std::optional<std::string> find_name_problem(std::string_view name) {
   if (name.empty()) return "it is empty";
   if (name.size() > kMaxNameBytes) {
     return "it is " + std::to_string(name.size()) + " bytes long, at most " +
@@ -128,7 +124,7 @@ std::string why_unfit_name(std::string_view name) {
       return "it holds a control character";
     }
   }
-  return "";
+  return std::nullopt;
 }
 
 }  // namespace zonepack::packer

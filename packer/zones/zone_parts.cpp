@@ -13,7 +13,7 @@ namespace {
 
 struct Anchored {
   const Member* member = nullptr;
-  Point2 anchor;  // its position or, outside of the zone, the nearest point of the outline
+  Point2 anchor;  // its position or, outside the zone, the nearest point of the outline
 };
 
 struct Part {

@@ -15,7 +15,7 @@ struct Member {
   ByteCount weight = 0;
 };
 
-// Signatures that no cut can part and that are heavier than the limit together, or one alone.
+// Signatures that no cut can separate, together heavier than the limit; may be a single one.
 struct Inseparable {
   std::vector<SignatureId> signatures;
   Point2 p_map;
@@ -25,13 +25,14 @@ struct Inseparable {
 struct ZoneParts {
   std::vector<Polygon> polygons;
   std::optional<Inseparable> heaviest;  // set: the limit cannot be kept
-  ByteCount narrow_limit = 0;  // not 0: signatures at one place (kOnePlace_m) were cut apart to
-                               // keep the limit, and would not be under this one
+  // Not 0: signatures at one place (kOnePlace_m) were cut apart to keep the limit; under this limit
+  // they would not be.
+  ByteCount narrow_limit = 0;
 };
 
-// One zone cut by the rule of split.hpp: connected polygons, in order along the length, that cover
-// the zone and have no area in common; no part's signatures weigh more than `limit` unless they are
-// inseparable. The zone itself when it is light enough.
+// Cuts one zone by the rule of split.hpp into connected polygons, in order along the length, that
+// cover the zone without overlap. No part's signatures weigh more than `limit` unless they are
+// inseparable. A zone that is light enough stays whole.
 ZoneParts parts_of(const Polygon& polygon, std::span<const Member> members, ByteCount limit);
 
 }  // namespace zonepack::packer

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "platform/base/utf8.hpp"
+
 namespace zonepack::packer {
 namespace {
 
@@ -15,7 +17,7 @@ constexpr std::size_t kNameInPair = 28;  // two of them, "-" and ".123456" are 6
 std::string shortened(const std::string& name) {
   if (name.size() <= kNameInPair) return name;
   std::size_t end = kNameInPair;
-  while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0u) == 0x80u) --end;
+  while (end > 0 && continues_utf8(name[end])) --end;
   return name.substr(0, end);
 }
 
@@ -48,6 +50,15 @@ std::vector<std::uint32_t> sort_by_name(ZonePlan& plan) {
   std::sort(plan.portals.begin(), plan.portals.end(),
             [](const PlannedPortal& a, const PlannedPortal& b) { return a.name < b.name; });
   return place;
+}
+
+std::vector<std::size_t> portals_per_zone(const ZonePlan& plan) {
+  std::vector<std::size_t> portals(plan.zones.size());
+  for (const PlannedPortal& portal : plan.portals) {
+    ++portals[portal.zone_a];
+    ++portals[portal.zone_b];
+  }
+  return portals;
 }
 
 std::string fresh_portal_name(const std::string& zone_a, const std::string& zone_b,

@@ -9,12 +9,12 @@
 
 #include "runtime/pack_format/file/geometry.hpp"
 
-// What a user has drawn: the zones of a building and the portals between them. Map frame, metres.
+// The zones of a building and the portals between them, as the user drew them. Metres, map frame.
 namespace zonepack::packer {
 
 struct PlannedZone {
-  std::string name;    // unique; see why_unfit_name()
-  std::string parent;  // the zone this is a part of when it was split; else empty
+  std::string name;    // unique; see find_name_problem()
+  std::string parent;  // the zone that this is a part of after a split; else empty
   std::string zone_type, label, layer, floor;  // empty when the file has none
   // Only signatures with z_min_m <= z < z_max_m belong to the zone; nullopt: no bound.
   std::optional<double> z_min_m, z_max_m;
@@ -23,7 +23,7 @@ struct PlannedZone {
 
 struct PlannedPortal {
   std::string name;                      // unique
-  std::uint32_t zone_a = 0, zone_b = 0;  // places in ZonePlan::zones; different
+  std::uint32_t zone_a = 0, zone_b = 0;  // indices into ZonePlan::zones; different
   Segment2 segment;                      // on the shared border
   friend bool operator==(const PlannedPortal& a, const PlannedPortal& b) {
     return a.name == b.name && a.zone_a == b.zone_a && a.zone_b == b.zone_b &&
@@ -34,18 +34,21 @@ struct PlannedPortal {
 struct ZonePlan {
   std::vector<PlannedZone> zones;      // sorted by name, byte order
   std::vector<PlannedPortal> portals;  // sorted by name, byte order
-  bool portals_found = false;          // the file had none: found from shared borders
+  bool portals_found = false;          // the file had none, so they were found at shared borders
 };
 
 // Whether two zones can both hold a point of one height.
 bool share_a_height(const PlannedZone& a, const PlannedZone& b) noexcept;
 
-// Sorts zones and portals by name and lets the portals follow their zones. Returns, for each old
-// place of a zone, its new one.
+// Sorts zones and portals by name and updates the portals' indices. Returns the new index of each
+// zone by its old one.
 std::vector<std::uint32_t> sort_by_name(ZonePlan& plan);
 
-// "A-B", or "A-B.2" and so on when that is taken, for a portal that nobody named; long zone names
-// are shortened. The name is added to `taken`.
+// How many portals lead into each zone.
+std::vector<std::size_t> portals_per_zone(const ZonePlan& plan);
+
+// A name for an unnamed portal: "A-B", or "A-B.2" and so on when that is taken; long zone names are
+// shortened. Adds the name to `taken`.
 std::string fresh_portal_name(const std::string& zone_a, const std::string& zone_b,
                               std::set<std::string>& taken);
 

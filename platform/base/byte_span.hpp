@@ -6,7 +6,7 @@
 
 namespace zonepack {
 
-// Bytes that somebody else owns, to be read.
+// Read-only view of bytes that someone else owns.
 using ByteSpan = std::span<const std::byte>;
 
 }  // namespace zonepack

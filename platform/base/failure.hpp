@@ -17,8 +17,9 @@ struct [[nodiscard]] Failure {
   std::string message;
 };
 
-// A value, or the failure that is to be shown to the user. Messages allocate: not for the control
-// thread, which returns Result<T>.
+// A value, or the failure to show to the user.
+//
+// Real-time: messages allocate; the control thread returns Result<T> instead.
 template <typename T>
 using Outcome = Result<T, Failure>;
 
@@ -38,7 +39,7 @@ Failure cannot_write(const std::string& file, const Error& error);
 // The error's word ("bad checksum"), or errno's text for kIo.
 std::string reason_text(const Error& error);
 
-// What a program ends with: 2 for the command line, 1 for all else.
+// The exit code of a program that fails so: 2 for a wrong command line, else 1.
 int exit_code(const Failure& failure) noexcept;
 
 // Prints "PROGRAM: message" to standard error, and returns the exit code.

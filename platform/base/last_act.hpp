@@ -3,8 +3,8 @@
 
 namespace zonepack {
 
-// What is done before the process stops because a ZP_REQUIRE failed, once, in the thread in which
-// it failed: outputs into their safe state. Null: nothing.
+// Sets what runs once, on the failing thread, before a failed ZP_REQUIRE stops the process: it puts
+// outputs into their safe state. Null: nothing runs.
 void set_last_act(void (*act)() noexcept) noexcept;
 
 }  // namespace zonepack

@@ -8,7 +8,6 @@ namespace zonepack {
 
 }  // namespace zonepack
 
-// On in every build: an invariant that does not hold would mean memory or motion nobody vouches
-// for.
+// On in every build: with a broken invariant, nothing vouches for memory or motion any more.
 #define ZP_REQUIRE(condition) \
   ((condition) ? static_cast<void>(0) : ::zonepack::require_failed(#condition, __FILE__, __LINE__))

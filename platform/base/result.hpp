@@ -27,9 +27,9 @@ enum class ErrorCode : std::uint16_t {
   kMismatch,        // two places that must agree do not (manifest and pack, pack and chunk)
   kExists,          // a name is taken
   kBusy,            // cannot be done now; try again later
-  kNoRoom,          // fits only if something protected were evicted
-  kCancelled,       // given up on request
-  kUsage,           // the caller asked for what cannot be meant; a program exits with 2
+  kNoRoom,          // would fit only if something protected were evicted
+  kCancelled,       // abandoned on request
+  kUsage,           // the caller asked for something meaningless; a program exits with 2
 };
 
 struct Error {
@@ -41,7 +41,7 @@ struct Error {
 // A stable lower-case word for the code ("bad checksum").
 const char* to_string(ErrorCode code) noexcept;
 
-// A value or the reason why there is none.
+// A value, or the reason why there is none.
 template <typename T, typename E = Error>
 class [[nodiscard]] Result {
  public:

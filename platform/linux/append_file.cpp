@@ -73,11 +73,12 @@ Result<void> AppendFile::sync() noexcept {
 }
 
 void drop_page_cache(int descriptor) noexcept {
-  // Only clean pages can be dropped. Both calls are advice: a file system without them keeps more.
+  // Only clean pages can be dropped. Both calls are hints: a file system that ignores them keeps
+  // more.
   ::sync_file_range(
       descriptor, 0, 0,
       SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
-  // From offset 0: a smaller window leaves pages of large folios behind.
+  // From offset 0, since a smaller window leaves pages of large folios behind.
   ::posix_fadvise(descriptor, 0, 0, POSIX_FADV_DONTNEED);
 }
 

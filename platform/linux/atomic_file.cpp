@@ -32,7 +32,8 @@ std::string folder_of(const std::string& path) {
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-// Replacing a device or a pipe by a file would take it from everyone; as root, /dev/null too.
+// Replacing a device or a pipe with a file would take it away from every program; as root, even
+// /dev/null.
 bool is_written_in_place(const std::string& path) {
   std::error_code unknown;
   const fs::file_status status = fs::status(path, unknown);
@@ -41,7 +42,7 @@ bool is_written_in_place(const std::string& path) {
   return ours || !(fs::is_regular_file(status) || fs::is_directory(status));
 }
 
-// Where a link leads, so that the link stays.
+// The target of a link, so that the link itself stays.
 std::string behind_links(std::string path) {
   std::error_code failed;
   if (!fs::is_symlink(path, failed)) return path;

@@ -122,7 +122,7 @@ class Board {
   void throttling() {
     const auto runtime = number_of("/proc/sys/kernel/sched_rt_runtime_us");
     add("real-time throttling",
-        !runtime       ? "not told"
+        !runtime       ? "unknown"
         : *runtime < 0 ? "off"
                        : std::to_string(*runtime) + " us a second",
         !runtime || *runtime < 0, "sysctl -w kernel.sched_rt_runtime_us=-1");
@@ -188,7 +188,7 @@ class Board {
   void compaction() {
     const auto allowed = number_of("/proc/sys/vm/compact_unevictable_allowed");
     add("compaction of locked pages",
-        !allowed        ? "not told"
+        !allowed        ? "unknown"
         : *allowed == 0 ? "off"
                         : "on",
         !allowed || *allowed == 0, "sysctl -w vm.compact_unevictable_allowed=0");

@@ -20,13 +20,13 @@ struct Guard {
   std::uintptr_t end;
 };
 
-// initial-exec: reading it in a handler must not allocate, even in a shared library.
+// initial-exec, because reading it in a handler must not allocate, even in a shared library.
 [[gnu::tls_model("initial-exec")]] thread_local Guard* volatile running = nullptr;
 
 struct sigaction former_action;
 
 void on_bus_error(int signal, siginfo_t* info, void* context) {
-  const bool sent = info->si_code <= 0;  // by kill(), not by a fault
+  const bool sent = info->si_code <= 0;  // raised by kill(), not by a fault
   const auto at = reinterpret_cast<std::uintptr_t>(info->si_addr);
   if (Guard* const guard = running;
       !sent && guard != nullptr && guard->begin <= at && at < guard->end) {
@@ -41,13 +41,13 @@ void on_bus_error(int signal, siginfo_t* info, void* context) {
   struct sigaction standard = {};
   standard.sa_handler = SIG_DFL;
   ::sigaction(SIGBUS, &standard, nullptr);
-  if (sent) ::raise(SIGBUS);  // a fault comes again by itself
+  if (sent) ::raise(SIGBUS);  // a fault recurs by itself
 }
 
 bool install() {
   struct sigaction ours = {};
   ours.sa_sigaction = on_bus_error;
-  // NODEFER: what was sent can be raised again in the handler.
+  // SA_NODEFER lets the handler raise a sent signal again.
   ours.sa_flags = SA_SIGINFO | SA_NODEFER | SA_ONSTACK;
   sigemptyset(&ours.sa_mask);
   return ::sigaction(SIGBUS, &ours, &former_action) == 0;
@@ -63,7 +63,7 @@ bool install() {
   Guard guard;
   guard.begin = reinterpret_cast<std::uintptr_t>(from) / page * page;
   guard.end = (reinterpret_cast<std::uintptr_t>(from) + size + page - 1) / page * page;
-  // With the signal mask: whoever wraps handlers (a sanitizer does) may block signals around ours.
+  // Saves the signal mask: a wrapper of handlers (a sanitizer) may block signals around ours.
   if (sigsetjmp(guard.back, 1) != 0) {
     running = nullptr;
     return false;

@@ -34,13 +34,13 @@ const sockaddr* generic(const sockaddr_un& address) noexcept {
   return reinterpret_cast<const sockaddr*>(&address);
 }
 
-// A socket left by a process that is gone; false when the name must stay.
+// Removes a socket left by a process that has ended; false when the name must stay.
 bool remove_stale(const std::string& path) noexcept {
   struct stat status;
   if (::lstat(path.c_str(), &status) != 0) return errno == ENOENT;
   if (!S_ISSOCK(status.st_mode)) return false;
-  const Result<LocalSocket> somebody = LocalSocket::connect(path);
-  if (somebody.ok() || somebody.error().code != ErrorCode::kNotFound) return false;
+  const Result<LocalSocket> listener = LocalSocket::connect(path);
+  if (listener.ok() || listener.error().code != ErrorCode::kNotFound) return false;
   return ::unlink(path.c_str()) == 0;
 }
 
@@ -97,7 +97,7 @@ Result<LocalSocket::Received> LocalSocket::receive(std::span<std::byte> buffer) 
   header.msg_control = control;
   header.msg_controllen = sizeof control;
   ssize_t got = 0;
-  bool reset = false;  // the peer closed without reading all: told once, before what it had sent
+  bool reset = false;  // the peer closed with unread data: reported once, before what it had sent
   do {
     reset = got < 0 && errno == ECONNRESET;
     got = ::recvmsg(fd_.get(), &header, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
@@ -151,7 +151,7 @@ Result<LocalListener> LocalListener::listen(const std::string& path, unsigned mo
   if (!remove_stale(path)) return {ErrorCode::kExists, errno};
   Descriptor fd(::socket(AF_UNIX, kKind, 0));
   if (!fd.is_open()) return io_error();
-  // Nobody can connect before listen(), so the mode is in place in time.
+  // No process can connect before listen(), so the mode is set in time.
   if (::bind(fd.get(), generic(address), sizeof address) != 0) return io_error();
   LocalListener listener(std::move(fd), path);
   if (::chmod(path.c_str(), static_cast<mode_t>(mode)) != 0) return io_error();

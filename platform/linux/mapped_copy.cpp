@@ -28,7 +28,7 @@ Result<void> copy_window(int fd, std::uint64_t offset, std::span<std::byte> out)
   const bool copied =
       guarded_copy(out.data(), static_cast<const std::byte*>(window) + skip, out.size());
   ::munmap(window, length);
-  // A file cut inside of its last page reads as zeros there, without a fault.
+  // A file truncated inside its last page reads as zeros there, without a fault.
   struct stat status;
   if (::fstat(fd, &status) != 0) return {ErrorCode::kIo, errno};
   const auto size = static_cast<std::uint64_t>(status.st_size);

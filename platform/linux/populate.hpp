@@ -5,8 +5,8 @@
 
 namespace zonepack {
 
-// Gives this process every page of the range, changing none: by one call of the kernel where it can
-// (Linux 5.14), not by a fault for each.
+// Makes every page of the range present without changing its content: by one system call where the
+// kernel can (Linux 5.14), else by one fault per page.
 void populate(std::byte* begin, std::size_t size) noexcept;
 
 }  // namespace zonepack

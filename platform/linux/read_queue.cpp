@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kRingBytes = ReadQueue::kBytes;  // also a huge page's size and alignment
 
-// Memory that starts where a huge page may.
+// Memory aligned for a huge page.
 std::byte* map_ring() noexcept {
   void* const mapped =
       ::mmap(nullptr, 2 * kRingBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -91,7 +91,7 @@ bool ReadQueue::ask(std::uint64_t offset, std::uint64_t size) noexcept {
     piece = {Piece::State::kUnderWay, number, 0};
   }
   long begun = count == 0 ? 0 : ::syscall(SYS_io_submit, context_, count, wanted.data());
-  // What the kernel does not take now is there as a failure.
+  // A read that the kernel does not accept now counts as failed.
   for (auto i = static_cast<std::size_t>(std::max(begun, 0L)); i < count; ++i) {
     place_of(requests[i].aio_data).state = Piece::State::kThere;
     place_of(requests[i].aio_data).bytes = -EAGAIN;

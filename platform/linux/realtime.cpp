@@ -36,7 +36,7 @@ struct Start {
   int error = 0;
 };
 
-// This thread's stack, from its guard up to here.
+// Touches this thread's stack, from its guard page up to here.
 void populate_stack() noexcept {
   pthread_attr_t attributes;
   if (pthread_getattr_np(pthread_self(), &attributes) != 0) return;

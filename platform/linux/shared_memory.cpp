@@ -29,7 +29,7 @@ int make_memfd(const char* name) {
   return fd >= 0 || errno != EINVAL ? fd : ::memfd_create(name, kFlags);
 }
 
-// The size of memory whose pages cannot vanish.
+// The size of a file whose seals keep its pages from vanishing.
 Result<std::size_t> sealed_size(const Descriptor& file) {
   const int seals = ::fcntl(file.get(), F_GET_SEALS);
   if (seals < 0 || (seals & kSizeSeals) != kSizeSeals) return ErrorCode::kMismatch;

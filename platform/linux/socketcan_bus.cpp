@@ -18,7 +18,7 @@ namespace zonepack {
 namespace {
 
 constexpr std::size_t kBatch = 64;
-constexpr std::int64_t kOpenedBefore_ns = 1'000'000'000;  // a new socket may have waited so long
+constexpr std::int64_t kOpenedBefore_ns = 1'000'000'000;  // how long a new socket may have waited
 
 class Bus final : public SocketCanBus {
  public:
@@ -44,7 +44,7 @@ class Bus final : public SocketCanBus {
   HardwareStamps hardware_;
   std::uint32_t dropped_by_socket_ = 0;
   bool had_socket_ = false;
-  bool emptied_ = false;  // by the last reading
+  bool emptied_ = false;  // by the last receive
   std::array<canfd_frame, kBatch> raw_{};
   std::array<iovec, kBatch> places_{};
   std::array<mmsghdr, kBatch> messages_{};
@@ -70,7 +70,7 @@ void Bus::follow_keeper() noexcept {
   status_.link = link;
   const auto fd = keeper_.take_new(socket_.get());
   if (!fd) return;
-  static_cast<void>(socket_.release());  // the keeper's now
+  static_cast<void>(socket_.release());  // the keeper owns it now
   socket_ = Descriptor(*fd);
   if (!socket_.is_open()) return;
   status_.reconnects += had_socket_;
@@ -88,7 +88,8 @@ std::size_t Bus::read_batch(std::size_t most) noexcept {
                     nullptr);
   };
   int count = read();
-  // Said once when the interface goes down; the socket has what came before, and works on later.
+  // Reported once when the interface goes down; the socket keeps earlier frames and works again
+  // later.
   if (count < 0 && errno == ENETDOWN) count = read();
   const int error = count < 0 ? errno : 0;
   stamps_.read_between(began_ns, monotonic_ns(), clock_offset_ns());

@@ -38,7 +38,7 @@ Result<void> SocketCanKeeper::start() {
 void SocketCanKeeper::run() {
   while (!stop_.load()) {
     wakeup_.wait_until(monotonic_ns() + kLook_ns);
-    static_cast<void>(look());  // what fails now is tried again
+    static_cast<void>(look());  // a failure now is retried
   }
 }
 

@@ -13,10 +13,11 @@
 
 namespace zonepack {
 
-// Keeps a reader supplied with a socket of the interface that bears a name now.
+// Keeps a reader supplied with a socket of the interface that has the given name now.
 //
-// Threads: start() by the owner; take_new() and lost() by the one reader, in real time: atomics
-// only; link() and granted_buffer_bytes() by any.
+// Real-time: take_new() and lost() use atomics only.
+// Threads: start() by the owner; take_new() and lost() by the one reader; link() and
+// granted_buffer_bytes() by any.
 class SocketCanKeeper {
  public:
   static constexpr int kNoSocket = -1;
@@ -24,14 +25,15 @@ class SocketCanKeeper {
   explicit SocketCanKeeper(const SocketCanSettings& settings) : settings_(settings) {}
   ~SocketCanKeeper();
 
-  // Looks for the first time, then goes on in a thread; errors are SocketCanBus::open()'s.
+  // Looks for the interface once, then continues on a thread of its own. Errors: those of
+  // SocketCanBus::open().
   Result<void> start();
 
-  // The socket to read from now on in place of `held`, or kNoSocket; nothing while it stays as it
-  // is. The keeper closes the one held; the reader closes the last one it was given.
+  // The socket that replaces `held` from now on, or kNoSocket; nothing while there is no change.
+  // The keeper closes the replaced socket; the reader closes the last one it was given.
   std::optional<int> take_new(int held) noexcept;
 
-  // The socket given last says that its interface is gone.
+  // Reports that the interface of the last socket is gone.
   void lost() noexcept { lost_.store(true); }
 
   CanLink link() const noexcept { return link_.load(); }
@@ -45,7 +47,7 @@ class SocketCanKeeper {
   void close_returned() noexcept;
 
   SocketCanSettings settings_;
-  int bound_index_ = 0;                  // of the socket offered last; 0: none
+  int bound_index_ = 0;                  // of the socket last offered; 0: none
   std::atomic<int> offered_{kNothing};   // keeper to reader
   std::atomic<int> returned_{kNothing};  // reader to keeper, while it takes what was offered
   std::atomic<bool> lost_{false};

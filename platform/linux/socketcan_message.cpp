@@ -23,7 +23,7 @@ static_assert(CMSG_SPACE(3 * sizeof(__kernel_timespec)) + CMSG_SPACE(sizeof(std:
 
 namespace {
 
-// A stamp of zero: none was taken.
+// A stamp of zero means that none was taken.
 std::optional<std::int64_t> stamp_of(const __kernel_timespec& time) noexcept {
   if (time.tv_sec == 0 && time.tv_nsec == 0) return std::nullopt;
   return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;

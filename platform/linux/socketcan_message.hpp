@@ -10,21 +10,23 @@
 
 #include "platform/can_bus.hpp"
 
-// What a raw CAN socket gives, without a socket. Real-time: no system calls.
+// Decodes what a raw CAN socket delivers, without a socket.
+//
+// Real-time: no system calls.
 namespace zonepack {
 
 // A frame of `size` bytes as read: classic (CAN_MTU) or FD (CANFD_MTU); nothing for other sizes.
-// Lengths over what the frame can hold are cut. The stamp is left at 0.
+// A length greater than the frame can hold is cut. The stamp stays 0.
 std::optional<CanFrame> frame_from_socket(const canfd_frame& raw, std::size_t size) noexcept;
 
-// What came beside a frame.
+// What came along with a frame.
 struct SocketCanNotes {
   std::optional<std::int64_t> software_ns;  // CLOCK_REALTIME at arrival
   std::optional<std::int64_t> hardware_ns;  // by the controller's own clock
-  std::optional<std::uint32_t> dropped;     // by this socket since it was opened, modulo 2^32
+  std::optional<std::uint32_t> dropped;     // by this socket since it was opened, mod 2^32
 };
 
-// Reads SO_TIMESTAMPING_NEW and SO_RXQ_OVFL; other and broken parts are skipped.
+// Reads SO_TIMESTAMPING_NEW and SO_RXQ_OVFL; skips other and malformed parts.
 SocketCanNotes notes_from_socket(const msghdr& message) noexcept;
 
 // Room for these notes.

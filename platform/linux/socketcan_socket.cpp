@@ -26,7 +26,7 @@ bool set(int fd, int level, int name, const T& value) noexcept {
 
 bool set_filters(int fd, const std::vector<CanId>& ids) noexcept {
   if (ids.empty()) return true;
-  // These masks are the ones for which the kernel finds the readers of a frame by its id alone.
+  // With exactly these masks the kernel finds the readers of a frame by its id alone.
   std::array<can_filter, CAN_RAW_FILTER_MAX> filters{};
   const std::size_t count = std::min(ids.size(), filters.size());
   for (std::size_t i = 0; i < count; ++i) {
@@ -44,7 +44,7 @@ bool prepare(int fd, const SocketCanSettings& settings) noexcept {
   const int stamps = SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE |
                      SOF_TIMESTAMPING_RX_HARDWARE | SOF_TIMESTAMPING_RAW_HARDWARE;
   const int bytes = static_cast<int>(settings.receive_buffer_bytes);
-  // With CAP_NET_ADMIN beyond net.core.rmem_max, else up to it; granted_buffer_bytes() tells.
+  // CAP_NET_ADMIN allows more than net.core.rmem_max; granted_buffer_bytes() reports the result.
   if (!set(fd, SOL_SOCKET, SO_RCVBUFFORCE, bytes)) set(fd, SOL_SOCKET, SO_RCVBUF, bytes);
   return set(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on) &&
          set(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors) &&

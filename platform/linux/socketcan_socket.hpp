@@ -10,7 +10,9 @@
 
 namespace zonepack {
 
-// What the kernel knows by a name; may take its time.
+// The interface that has a name now.
+//
+// Real-time: may wait in the kernel.
 struct InterfaceState {
   int index = 0;  // 0: no such interface
   CanLink link = CanLink::kAbsent;

@@ -25,7 +25,8 @@ constexpr std::size_t kPieceBytes = 1 * kMiB;
 
 std::atomic<StorageProbe*> probe_in_use = nullptr;
 
-// The same file for reads past the page cache; none where it has no such reads, or is another now.
+// The same file opened for reads that bypass the page cache; none where the file system has no such
+// reads, or the name now leads to another file.
 Descriptor open_direct(const std::string& path, int flags, const struct stat& same) noexcept {
   Descriptor direct(::open(path.c_str(), flags | O_DIRECT));
   struct stat status;
@@ -35,7 +36,7 @@ Descriptor open_direct(const std::string& path, int flags, const struct stat& sa
   return direct;
 }
 
-// Reading at `at` gave nothing: the file ends there or before.
+// Reading at `at` returned nothing: the file ends there or earlier.
 Error truncated(int fd, std::uint64_t at) noexcept {
   struct stat status;
   const bool known = ::fstat(fd, &status) == 0;
@@ -58,7 +59,7 @@ Result<void> read_all(int fd, std::uint64_t offset, std::span<std::byte> out) no
   return {};
 }
 
-// Until the pages of a range are there, or cannot be read.
+// Waits until the pages of a range are present, or cannot be read.
 void wait_for(int fd, std::uint64_t from, std::uint64_t to) noexcept {
   for (std::uint64_t at = from; at < to; at += kSmallestPage) {
     std::byte ignored;
@@ -98,7 +99,7 @@ Result<StorageFile> StorageFile::open(const std::string& path, ReadMode mode, Re
       file.mode_ = ReadMode::kDirect;
     }
   }
-  // No reading ahead beyond what read_ahead() asks for: on some machines it is 8 MiB.
+  // Disables the kernel's own read-ahead, which is 8 MiB on some machines.
   if (mode != ReadMode::kCached) ::posix_fadvise(fd, 0, 0, POSIX_FADV_RANDOM);
   return file;
 }
@@ -152,7 +153,7 @@ Result<std::span<const std::byte>> StorageFile::read_window(std::uint64_t offset
   if (queue_ != nullptr) {
     queue_->pass(offset);
     if (const auto there = queue_->find(offset, size, buffer)) {
-      drop_behind(offset + size);  // some file systems serve such reads from the cache
+      drop_behind(offset + size);  // some file systems serve direct reads from the cache
       return *there;
     }
   }
@@ -176,7 +177,7 @@ bool StorageFile::expect(std::uint64_t offset, std::uint64_t size) noexcept {
   return true;
 }
 
-// What was asked for before `end` has been read by now.
+// Ranges requested before `end` have been read by now.
 void StorageFile::settle_ahead(std::uint64_t end) noexcept {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < ahead_count_; ++i) {
@@ -185,7 +186,7 @@ void StorageFile::settle_ahead(std::uint64_t end) noexcept {
   ahead_count_ = kept;
 }
 
-// From offset 0 each time: dropping piece by piece leaves large folios behind that span pieces.
+// From offset 0 each time: dropping piece by piece leaves large folios that span pieces.
 void StorageFile::drop_behind(std::uint64_t end) noexcept {
   if (mode_ == ReadMode::kCached || end < dropped_ + kDropBytes) return;
   ::posix_fadvise(fd_, 0, static_cast<off_t>(end), POSIX_FADV_DONTNEED);

@@ -48,7 +48,7 @@ void SimCanBus::follow_plan(std::int64_t until_ns) noexcept {
   }
 }
 
-// The next frame that has arrived and is let through.
+// Takes the next frame that has arrived and passes the filter.
 bool SimCanBus::take_arrived(CanFrame& frame) noexcept {
   while (fill() && arrival_ns_ <= now_ns_) {
     follow_plan(arrival_ns_);

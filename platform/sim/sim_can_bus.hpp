@@ -13,38 +13,38 @@
 
 namespace zonepack {
 
-// From at_ns on.
+// A link state from at_ns on.
 struct CanLinkChange {
   std::int64_t at_ns = 0;
   CanLink link = CanLink::kUp;
 };
 
-// A CAN bus in simulated time, seen through an interface as a kernel gives it. A frame arrives at
-// its stamp; one whose stamp lies before its predecessor's arrives together with that one and keeps
-// its stamp. Order is never changed. What arrives while the link is not up is not received.
+// A CAN bus in simulated time, seen through an interface as the kernel presents it. A frame arrives
+// at its stamp; a frame stamped before its predecessor arrives together with it and keeps its
+// stamp. The order never changes. Frames that arrive while the link is not up are not received.
 class SimCanBus final : public CanBus {
  public:
   // Without a source, only pushed frames arrive. The source must outlive the bus.
   explicit SimCanBus(CanFrameSource* source = nullptr) noexcept : source_(source) {}
 
-  // Before the first frame. Each allocates.
-  void limit_queue(std::size_t frames);  // as a socket's buffer; else without limit
-  void only(std::vector<CanId> ids) { ids_ = std::move(ids); }  // and error frames; else all
-  void plan(std::vector<CanLinkChange> changes) { plan_ = std::move(changes); }  // in time's order
+  // To be called before the first frame. Each allocates.
+  void limit_queue(std::size_t frames);  // like a socket's buffer; default: no limit
+  void only(std::vector<CanId> ids) { ids_ = std::move(ids); }  // and error frames; default: all
+  void plan(std::vector<CanLinkChange> changes) { plan_ = std::move(changes); }  // by time
 
-  // Frames stamped up to and including now_ns can be received from here on; time never runs back.
+  // From now on, frames stamped up to and including now_ns can be received; time never runs back.
   void advance_to(std::int64_t now_ns) noexcept;
 
-  // Puts a frame behind those that wait (tests; allocates).
+  // Adds a frame after those that wait (for tests; allocates).
   void push(const CanFrame& frame) { pushed_.push_back(frame); }
 
-  // The next `count` frames are lost and counted instead of being received.
+  // Loses and counts the next `count` frames instead of receiving them.
   void lose(std::uint64_t count) noexcept { to_lose_ += count; }
 
-  // From here on, until the plan says otherwise.
+  // Applies until the plan changes it.
   void set_link(CanLink link) noexcept;
 
-  // When the next frame arrives or arrived; nullopt when none will.
+  // When the next frame arrives, or has arrived; nullopt when none will.
   std::optional<std::int64_t> next_arrival_ns() noexcept;
 
   std::size_t receive(std::span<CanFrame> into) noexcept override;
@@ -60,7 +60,7 @@ class SimCanBus final : public CanBus {
   CanFrameSource* source_;
   std::vector<CanId> ids_;
   std::vector<CanLinkChange> plan_;
-  std::size_t planned_ = 0;  // changes that came to pass
+  std::size_t planned_ = 0;  // changes already applied
   std::deque<CanFrame> pushed_;
   std::optional<CanFrame> waiting_;
   std::int64_t arrival_ns_ = INT64_MIN;  // of waiting_; never falls

@@ -218,7 +218,7 @@ Result<std::unique_ptr<GpioInput>> SimGpio::open(const GpioInputSettings& settin
   if (place->line->output) return ErrorCode::kMismatch;
   place->line->consumer = "zoned";
   place->line->watched = true;
-  // Without a drive from outside, the pull decides.
+  // When nothing outside drives the line, the pull decides.
   if (settings.bias == GpioBias::kPullUp) place->line->high = true;
   return std::unique_ptr<GpioInput>(std::make_unique<Input>(*this, *place, settings));
 }

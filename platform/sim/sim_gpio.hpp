@@ -14,14 +14,16 @@
 
 namespace zonepack {
 
-// GPIO chips whose lines a test drives and watches from outside, in a time that it sets. High and
-// low are what is on the wire. Threads: any.
+// GPIO chips whose lines a test drives and watches from outside, in simulated time. High and low
+// are the levels on the wire.
+//
+// Threads: any.
 class SimGpio final : public GpioPort {
  public:
   // Chips are named gpiochip0, gpiochip1, ... in the order in which they are added.
   void add_chip(const std::string& label, unsigned lines);
   void name_line(const std::string& label, unsigned line, const std::string& name);
-  void remove_chip(const std::string& label);  // with its lines open: they fail with ENODEV
+  void remove_chip(const std::string& label);  // open lines then fail with ENODEV
 
   void advance_to(std::int64_t now_ns);  // time never runs back
   std::int64_t now_ns() const;
@@ -31,11 +33,11 @@ class SimGpio final : public GpioPort {
   std::uint64_t changes(const std::string& label, unsigned line) const;  // by the program
   void occupy(const std::string& label, unsigned line, const std::string& consumer);
   void release(const std::string& label, unsigned line);
-  void make_output(const std::string& label, unsigned line);  // held by nobody, but set up so
+  void make_output(const std::string& label, unsigned line);  // in use by no program
 
-  // While slow, set() does not return: an expander behind a bus that hangs.
+  // While hanging, set() does not return: an expander on a bus that hangs.
   void hang(const std::string& label, bool hangs);
-  // Calls of set() that wait now.
+  // Calls of set() that are waiting now.
   int hanging() const;
 
   Result<GpioLineInfo> look(const GpioLineName& name) override;
@@ -43,7 +45,7 @@ class SimGpio final : public GpioPort {
   Result<std::unique_ptr<GpioInput>> open(const GpioInputSettings& settings) override;
 
  private:
-  static constexpr std::size_t kQueue = 16;  // edges that wait; others are lost, as in the kernel
+  static constexpr std::size_t kQueue = 16;  // edges that wait; more are lost, as in the kernel
 
   struct Line {
     std::string name, consumer;

@@ -11,8 +11,8 @@
 
 namespace zonepack {
 
-// Makes files fail, stall and tell what is read of them, while it exists; one at a time. A file is
-// named by the end of its path.
+// Makes files fail or stall, and records what is read of them, during its lifetime; only one may
+// exist at a time. A file is named by the end of its path.
 //
 // Threads: any. A read that is held blocks its thread as a dead disk would.
 class SimStorage final : public StorageProbe {
@@ -28,19 +28,19 @@ class SimStorage final : public StorageProbe {
   SimStorage(const SimStorage&) = delete;
   SimStorage& operator=(const SimStorage&) = delete;
 
-  // Opening fails with this error.
+  // Makes opening fail with this error.
   void fail_open(const std::string& file, Error error);
-  // Reads that touch bytes at or behind `from` fail with this error.
+  // Makes reads that touch bytes at or after `from` fail with this error.
   void fail_reads(const std::string& file, std::uint64_t from, Error error);
-  // Reads wait until release().
+  // Makes reads wait until release().
   void hold_reads(const std::string& file);
   void release();
-  // No faults any more; releases.
+  // Removes all faults and releases held reads.
   void heal();
 
-  // Whether a read is being held just now.
+  // Whether a read is being held now.
   bool holding() const;
-  // All reads of files opened since this exists, failed ones included.
+  // All reads of files opened during the lifetime of this object, including failed ones.
   std::vector<Read> reads() const;
 
   Result<FileMark> on_open(const std::string& path) noexcept override;

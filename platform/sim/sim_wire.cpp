@@ -11,9 +11,10 @@ namespace {
 
 using Fault = SimFault::Kind;
 
-constexpr std::uint32_t kErrorFrameBits = 31;  // with the pause behind it, at most
+constexpr std::uint32_t kErrorFrameBits = 31;  // with the pause after it, at most
 
-// Lower wins: the bits in the order in which they are sent, up to the one that tells lengths apart.
+// The lower value wins: the bits in sending order, up to the one that separates standard from
+// extended ids.
 std::uint64_t arbitration_key(const CanFrame& frame) noexcept {
   const std::uint64_t base = frame.extended ? frame.id >> 18u : frame.id;
   const std::uint64_t rest = frame.extended ? frame.id & 0x3FFFFu : 0;
@@ -42,22 +43,22 @@ SimWire::SimWire(SimWireSettings settings, std::vector<CanFrameSource*> nodes)
   if (first_ns_ == INT64_MAX) first_ns_ = 0;
   std::stable_sort(settings_.faults.begin(), settings_.faults.end(),
                    [](const SimFault& a, const SimFault& b) { return a.at_ns < b.at_ns; });
-  std::vector<Told> told;
+  std::vector<Report> reports;
   for (const SimFault& fault : settings_.faults) {
     const std::int64_t at_ns = first_ns_ + fault.at_ns;
     if (fault.kind == Fault::kBusOff) {
-      told.push_back({at_ns, error_frame(kCanErrorBusOff)});
-      told.push_back({at_ns + fault.for_ns, error_frame(kCanErrorRestarted)});
+      reports.push_back({at_ns, error_frame(kCanErrorBusOff)});
+      reports.push_back({at_ns + fault.for_ns, error_frame(kCanErrorRestarted)});
     }
     if (fault.kind == Fault::kPassive) {
-      told.push_back({at_ns, error_frame(kCanErrorController, kCanControllerPassive)});
-      told.push_back(
+      reports.push_back({at_ns, error_frame(kCanErrorController, kCanControllerPassive)});
+      reports.push_back(
           {at_ns + fault.for_ns, error_frame(kCanErrorController, kCanControllerActive)});
     }
   }
-  std::stable_sort(told.begin(), told.end(),
-                   [](const Told& a, const Told& b) { return a.at_ns < b.at_ns; });
-  told_.assign(told.begin(), told.end());
+  std::stable_sort(reports.begin(), reports.end(),
+                   [](const Report& a, const Report& b) { return a.at_ns < b.at_ns; });
+  reports_.assign(reports.begin(), reports.end());
 }
 
 std::vector<CanLinkChange> SimWire::links() const {
@@ -132,10 +133,10 @@ std::optional<CanFrame> SimWire::next() noexcept {
     CanFrame frame = *sender->ready;
     const std::int64_t ready_ns = frame.stamp_ns;
     const std::int64_t start_ns = settings_.bit_rate == 0 ? ready_ns : std::max(ready_ns, free_ns_);
-    if (!told_.empty() && told_.front().at_ns <= start_ns) {
-      CanFrame error = told_.front().frame;
-      error.stamp_ns = told_.front().at_ns;
-      told_.pop_front();
+    if (!reports_.empty() && reports_.front().at_ns <= start_ns) {
+      CanFrame error = reports_.front().frame;
+      error.stamp_ns = reports_.front().at_ns;
+      reports_.pop_front();
       return error;
     }
     waited_ += start_ns > ready_ns;
@@ -153,10 +154,10 @@ std::optional<CanFrame> SimWire::next() noexcept {
     }
     return frame;
   }
-  if (told_.empty()) return std::nullopt;
-  CanFrame error = told_.front().frame;
-  error.stamp_ns = told_.front().at_ns;
-  told_.pop_front();
+  if (reports_.empty()) return std::nullopt;
+  CanFrame error = reports_.front().frame;
+  error.stamp_ns = reports_.front().at_ns;
+  reports_.pop_front();
   return error;
 }
 

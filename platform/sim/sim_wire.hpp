@@ -12,17 +12,17 @@
 
 namespace zonepack {
 
-// Something that goes wrong on a simulated wire, or at our end of it.
+// A fault on a simulated wire, or at our end of it.
 struct SimFault {
   enum class Kind : std::uint8_t {
-    kBusOff,    // our controller leaves the bus, and is restarted at the end
-    kPassive,   // it is error passive until the end; frames come
-    kDrop,      // frames get lost unseen: the next `count`, or all until the end
+    kBusOff,    // our controller leaves the bus and restarts at the end
+    kPassive,   // our controller is error passive until the end; frames still arrive
+    kDrop,      // frames are lost unnoticed: the next `count`, or all until the end
     kOverflow,  // the same, but the kernel counts them
-    kDelay,     // frames wait until the end, then come at once
+    kDelay,     // frames wait until the end, then arrive at once
     kNoise,     // each frame is destroyed once and sent again
     kDown,      // the interface is down until the end
-    kAbsent,    // it is gone until the end
+    kAbsent,    // the interface is gone until the end
   };
   Kind kind = Kind::kDrop;
   std::int64_t at_ns = 0;  // after the first frame
@@ -36,28 +36,28 @@ struct SimWireSettings {
   std::vector<SimFault> faults = {};
 };
 
-// Bits on a wire, with as many stuff bits as there can be and the pause behind the frame. Classic:
+// Bits on a wire, with the most stuff bits possible and the pause after the frame. Classic:
 // 55 + 10 len, extended 80 + 10 len (Davis, Burns, Bril, Lukkien, "Controller Area Network (CAN)
-// schedulability analysis", 2007). FD: what is sent at each of its two rates.
+// schedulability analysis", 2007). FD: bits sent at each of its two rates.
 struct FrameBits {
   std::uint32_t arbitration = 0;
   std::uint32_t data = 0;
 };
 FrameBits bits_of(const CanFrame& frame) noexcept;
 
-// What is heard on a wire to which several nodes send, each in its own order: a frame is ready at
-// its stamp, waits while the wire is busy, and goes when it has the lowest id of those that are
-// ready; its stamp becomes the end of its last bit. It ends with the first node. Faults come to
-// pass in their time.
+// A wire to which several nodes send, each in its own order: a frame is ready at its stamp, waits
+// while the wire is busy, and is sent when it has the lowest id of the ready frames; its stamp
+// becomes the end of its last bit. The sequence ends when the first node's ends. Faults apply at
+// their times.
 class SimWire final : public CanFrameSource {
  public:
-  // The nodes, at least one, must outlive the wire. Faults are put in order of their time.
+  // The nodes, at least one, must outlive the wire. Sorts the faults by time.
   SimWire(SimWireSettings settings, std::vector<CanFrameSource*> nodes);
 
   std::optional<CanFrame> next() noexcept override;
   std::uint64_t dropped() const noexcept override;
 
-  // Links as the faults make them, for the bus that hears the wire; known once started.
+  // The link changes that the faults cause, for the bus on this wire; known once started.
   std::vector<CanLinkChange> links() const;
 
   // Frames that were ready but had to wait for the wire.
@@ -75,11 +75,11 @@ class SimWire final : public CanFrameSource {
 
   SimWireSettings settings_;
   std::vector<Node> nodes_;
-  struct Told {
+  struct Report {
     std::int64_t at_ns;
     CanFrame frame;
   };
-  std::deque<Told> told_;  // error frames to come
+  std::deque<Report> reports_;  // error frames to come
   std::int64_t first_ns_ = 0;
   std::int64_t free_ns_ = INT64_MIN;  // when the wire is
   std::uint64_t overflowed_ = 0;

@@ -32,16 +32,18 @@ inline constexpr PayloadMask kDefaultPayload = kCoreOnly | mask_of(fb::PayloadKi
 // The kind whose payload a table of this part belongs to.
 fb::PayloadKind kind_of(fb::Part part) noexcept;
 
-// Checks everything that reading a decoded chunk relies on: FlatBuffers structure, every record,
+// Checks everything that readers of a decoded chunk rely on: FlatBuffers structure, every record,
 // every column's place and size, ordinals inside [first_signature, last_signature] of its index
 // entry. Bounded: one pass over records and columns, no allocation. `bytes` must be aligned to 16.
 Result<void> check_core_chunk(ByteSpan bytes, const fb::ChunkEntry& entry) noexcept;
 Result<void> check_bulk_chunk(ByteSpan bytes, const fb::ChunkEntry& entry) noexcept;
 Result<void> check_chunk(ByteSpan bytes, const fb::ChunkEntry& entry) noexcept;
 
-// One record of a bulk chunk: rows of one table. Valid as long as the chunk's bytes.
-// Threads: immutable. Real-time: no allocation; column() looks at no more than the record's
-// columns.
+// One record of a bulk chunk: rows of one table.
+//
+// Ownership: valid as long as the chunk's bytes.
+// Real-time: no allocation; column() looks at no more than the record's columns.
+// Threads: immutable.
 class RecordView {
  public:
   RecordView(const fb::BulkChunk& chunk, std::uint32_t record) noexcept
@@ -49,8 +51,8 @@ class RecordView {
         columns_(reinterpret_cast<const fb::Column*>(chunk.columns()->Data()) +
                  record_->first_column()),
         bytes_(reinterpret_cast<const std::byte*>(chunk.bytes()->data())) {}
-  // A record and its columns that were copied out of a checked chunk, whose bytes stay where they
-  // are and may change: what is read there may be wrong, but is read inside them.
+  // A record and its columns, copied out of a checked chunk whose bytes stay in place and may
+  // change: values read later may be wrong, but no read leaves the chunk.
   RecordView(const fb::Record& record, const fb::Column* columns, const std::byte* bytes) noexcept
       : record_(&record), columns_(columns), bytes_(bytes) {}
 

@@ -18,9 +18,9 @@ bool blocks_are_sound(ByteSpan bytes, std::uint32_t rows) noexcept {
   const std::uint64_t blocks = (std::uint64_t{rows} + kBlockRows - 1) / kBlockRows;
   const std::uint64_t headers = blocks * sizeof(BlockHeader);
   if (headers > bytes.size()) return false;
-  // Gathered, because a way out of every round would cost as much as the round.
+  // Errors are accumulated, since an exit from every iteration would cost as much as the iteration.
   std::uint32_t words = 0;
-  std::uint32_t elsewhere = 0;  // not 0: some block does not begin where the one before ends
+  std::uint32_t elsewhere = 0;  // not 0: some block does not begin where the previous one ends
   std::uint32_t too_wide = 0;   // top bit: some block has more than 32 bits a row
   for (std::uint64_t i = 0; i < blocks; ++i) {
     BlockHeader header;
@@ -52,7 +52,7 @@ bool lattice_is_sound(ByteSpan bytes, std::uint32_t rows) noexcept {
          cells >= rows && bytes.size() - sizeof header == (cells + 7) / 8;
 }
 
-// What a codec does not use is zero, and so are bits behind the last row.
+// Fields that a codec does not use are zero, and so are bits after the last row.
 bool unused_is_zero(const ColumnView& column) noexcept {
   const auto codec = column.codec();
   const bool packed = codec == fb::ColumnCodec::Packed || codec == fb::ColumnCodec::Scaled;
@@ -78,7 +78,7 @@ std::uint64_t ones(ByteSpan bits) noexcept {
 
 constexpr unsigned bit_of(fb::ColumnCodec codec) { return 1u << static_cast<unsigned>(codec); }
 
-// Which codecs a field may have, as bits, so that readers need not ask before they use an accessor.
+// The codecs that a field may have, as bits, so that readers may use an accessor without asking.
 constexpr std::uint8_t codecs_of(fb::Field field) {
   using fb::ColumnCodec;
   switch (field) {

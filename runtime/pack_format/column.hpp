@@ -12,9 +12,9 @@
 #include "runtime/pack_format/bulk_chunk_generated.h"
 #include "runtime/pack_format/limits.hpp"
 
-// Columns of 32-bit values in the smallest form that gives every bit back, each read in O(1) where
-// it stands. Values are kept in an order-preserving unsigned form, so that neighbours in value are
-// neighbours in bits.
+// Columns of 32-bit values in the smallest form that restores every bit; each value is read in
+// place in O(1). Values are kept in an order-preserving unsigned form, so that neighbours in value
+// are neighbours in bits.
 namespace zonepack {
 
 // Rows of a Blocks column that share one base and one width.
@@ -50,7 +50,7 @@ constexpr bool is_integer(fb::Field field) noexcept {
   return field == fb::Field::WordId || field == fb::Field::Octave;
 }
 
-// Of the whole table, not of its rows: one row in the first record.
+// Attributes belong to the whole table instead of its rows: one row in the first record.
 constexpr bool is_attribute(fb::Field field) noexcept {
   return field == fb::Field::Shape || field == fb::Field::Info;
 }
@@ -65,8 +65,8 @@ inline std::uint32_t packed_at(const std::byte* bytes, std::uint32_t index,
   return static_cast<std::uint32_t>((word >> (bit & 7)) & ((std::uint64_t{1} << width) - 1));
 }
 
-// A value out of bytes that another process may change meanwhile: the compiler does not read them
-// a second time after the value was checked.
+// Reads a value from bytes that another process may change meanwhile: keeps the compiler from
+// reading them again after the value has been checked.
 template <typename T>
 T read_once(const std::byte* from) noexcept {
   T value;
@@ -75,9 +75,11 @@ T read_once(const std::byte* from) noexcept {
   return value;
 }
 
-// One column of one record, where it stands. Made by RecordView from validated columns only; their
-// bytes may change later, after which values are wrong, but nothing outside the column is read.
-// Threads: immutable. Real-time: every access O(1), no allocation.
+// One column of one record, read in place. RecordView makes it from validated columns only; their
+// bytes may change later, which makes values wrong, but no read leaves the column.
+//
+// Real-time: every access is O(1), no allocation.
+// Threads: immutable.
 class ColumnView {
  public:
   ColumnView() = default;
@@ -150,12 +152,12 @@ void for_each_scan_index(const ColumnView& column, Fn&& fn) {
 // above reads outside column bytes plus kColumnPadding. `bytes` are the chunk's.
 bool column_is_sound(const fb::Column& column, ByteSpan bytes, std::uint32_t rows) noexcept;
 
-// The same of all columns of a record, and that each has a codec its field may have.
+// The same for all columns of a record, and whether each has a codec that its field may have.
 bool columns_are_sound(std::span<const fb::Column> columns, ByteSpan bytes,
                        std::uint32_t rows) noexcept;
 
-// Whether bit strings hold exactly the declared rows, and what the codec does not use is zero.
-// Costs a pass over the column; for verify.
+// Whether bit strings hold exactly the declared rows, and everything that the codec does not use is
+// zero. Takes a pass over the column; for verify.
 bool column_is_exact(const ColumnView& column) noexcept;
 
 }  // namespace zonepack

@@ -7,9 +7,9 @@
 
 #include "runtime/pack_format/chunk_view.hpp"
 
-// check_core_chunk() in one pass: of each table what FlatBuffers' verifier checks, then what its
-// fields mean. The verifier, made for any schema, took a quarter of the time in which a core chunk
-// is read and decoded. It stays the measure: a test holds both to the same verdicts.
+// check_core_chunk() in one pass: for each table what FlatBuffers' verifier checks, then what its
+// fields mean. The verifier, written for any schema, took a quarter of the time for reading and
+// decoding a core chunk. It remains the reference: a test holds both to the same verdicts.
 namespace zonepack {
 namespace {
 
@@ -32,7 +32,7 @@ class Buffer {
 
   std::uint64_t size() const noexcept { return size_; }
 
-  // As the verifier has it: less than the whole buffer.
+  // As in the verifier: less than the whole buffer.
   bool holds(Position at, std::uint64_t length) const noexcept {
     return length < size_ && at <= size_ - length;
   }
@@ -47,13 +47,13 @@ class Buffer {
     return reinterpret_cast<const T*>(data_ + elements.first);
   }
 
-  // Where a vector of tables has its `i`th; may lie anywhere.
+  // The position of the `i`th table of a vector; may be anywhere.
   Position table(const Elements& tables, std::uint64_t i) const noexcept {
     const Position at = tables.first + i * 4;
     return at + read<std::uint32_t>(at);
   }
 
-  // What the offset at `field`, a place known to hold one, leads to; none when that does not fit.
+  // The target of the offset at `field`, which is known to hold one; none when it does not fit.
   Elements elements(Position field, std::uint64_t element_bytes) const noexcept {
     const std::uint64_t offset = read<std::uint32_t>(field);
     const Position at = field + offset;
@@ -68,7 +68,7 @@ class Buffer {
   std::uint64_t size_;
 };
 
-// A field's form; alignment is that of the number inside. Fields stand in the order of the schema.
+// A field's form; alignment is that of the number inside. Fields are in the order of the schema.
 struct FieldForm {
   std::uint16_t size;
   std::uint16_t alignment;
@@ -82,13 +82,13 @@ constexpr std::array kSignatureForm{kByte,   kWord,   kWord,      kWord,      kW
                                     kDouble, kOffset, kTransform, kTransform, kTransform,
                                     kOffset, kOffset, kOffset,    kOffset};
 
-// Tables of one kind. Those of a chunk share few vtables, so what the last one says is kept.
+// Tables of one kind. Those of a chunk share few vtables, so the last one is cached.
 template <const auto& kForm>
 class Tables {
  public:
   explicit Tables(Buffer buffer) noexcept : buffer_(buffer) {}
 
-  // Whether the table at `at` stands in the buffer with all its fields, each aligned.
+  // Whether the table at `at` is in the buffer with all its fields, each aligned.
   bool enter(Position at) noexcept {
     at_ = at;
     return (at <= last_ && (at & align_mask_) == align_ && vtable_of(at) == vtable_) || learn(at);
@@ -105,7 +105,7 @@ class Tables {
     return table - static_cast<Position>(std::int64_t{buffer_.template read<std::int32_t>(table)});
   }
 
-  // Apart, so that the loop over tables keeps its registers.
+  // A function of its own, so that the loop over tables keeps its registers.
   [[gnu::noinline]] bool learn(Position table) noexcept {
     align_mask_ = 0;
     align_ = 1;
@@ -137,8 +137,8 @@ class Tables {
   const Buffer buffer_;
   Position at_ = 0;
   Position vtable_ = 0;
-  Position last_ = 0;                    // where a table with this vtable may stand at most
-  Position align_mask_ = 0, align_ = 1;  // no table has been learnt: none fits
+  Position last_ = 0;                    // the greatest position of a table with this vtable
+  Position align_mask_ = 0, align_ = 1;  // no vtable is cached, so none fits
   std::array<std::uint16_t, kForm.size()> place_{};
 };
 
@@ -148,7 +148,7 @@ bool is_string(Buffer buffer, Position field) noexcept {
   return text && buffer.holds(end, 1) && buffer.read<std::uint8_t>(end) == 0;
 }
 
-// References beyond the last of `limit` things, gathered without a branch; ~0 refers to none.
+// Collects references beyond the last of `limit` items without a branch; ~0 refers to none.
 class References {
  public:
   explicit References(std::uint64_t limit) noexcept : limit_(limit) {}

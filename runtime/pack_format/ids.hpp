@@ -5,7 +5,7 @@
 
 namespace zonepack {
 
-// A zone's place in the manifest's list, which is sorted by name. Valid for one map version only.
+// A zone's index in the manifest's list, which is sorted by name. Valid for one map version only.
 using ZoneId = std::uint32_t;
 inline constexpr ZoneId kNoZone = 0xFFFFFFFFu;
 

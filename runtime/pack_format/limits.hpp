@@ -6,7 +6,7 @@
 
 #include "platform/base/byte_count.hpp"
 
-// Numbers that belong to the format. A packer refuses a map beyond them by name; a reader refuses a
+// Limits of the format. A packer refuses a map beyond them by name; a reader refuses a
 // file beyond them. FORMAT.md gives the reasons.
 namespace zonepack {
 

@@ -5,8 +5,8 @@
 
 #include <cstdint>
 
-// FlatBuffers' verifier does not look at how structs are aligned; a processor that must have its
-// 64-bit values aligned would stop at the first one that is not.
+// FlatBuffers' verifier does not check the alignment of structs; a processor that requires aligned
+// 64-bit values would stop at the first misaligned one.
 namespace zonepack {
 
 template <typename Struct>

@@ -10,13 +10,13 @@
 
 namespace zonepack {
 
-// A decoded, checked chunk and where it stands.
+// A decoded and checked chunk in memory.
 struct ChunkRef {
   fb::PayloadKind kind;
   ByteSpan bytes;
 };
 
-// Some signatures of a zone that follow each other; both ends belong to it.
+// A run of signatures of a zone, both ends included.
 struct OrdinalRange {
   std::uint32_t first = 0;
   std::uint32_t last = 0xFFFFFFFFu;
@@ -33,7 +33,7 @@ class TableView {
   fb::Part part() const noexcept { return records_.front().part(); }
   std::uint16_t ordinal() const noexcept { return records_.front().ordinal(); }
   std::uint32_t total_rows() const noexcept { return records_.front().total_rows(); }
-  // Attributes stand in the first record.
+  // Attributes are in the first record.
   ColumnView attribute(fb::Field field) const noexcept { return records_.front().column(field); }
 
  private:
@@ -41,16 +41,19 @@ class TableView {
 };
 
 // The signatures of one zone as its decoded chunks hold them, read in place: no value is copied.
-// Ownership: refers to the chunks' bytes, which must outlive the view. Built by a reader
-// (allocates); then immutable. Ordinals count a zone's signatures from 0 in the order of their ids.
+// Ordinals count a zone's signatures from 0 in the order of their ids.
+//
+// Ownership: refers to the chunks' bytes, which must outlive the view.
+// Memory: make() allocates; nothing else does.
+// Threads: immutable once made.
 class ZoneView {
  public:
   // Refuses tables whose records leave out, repeat or contradict rows (kMismatch; detail: the
   // ordinal), signatures without a core record, and ids out of order. With a range, the view holds
-  // its signatures only, and the chunks need not hold others whole.
+  // only its signatures, and the chunks may lack parts of others.
   static Result<ZoneView> make(std::span<const ChunkRef> chunks, OrdinalRange range = {});
 
-  // The same of checked core chunks, and of the records of all other chunks.
+  // The same from checked core chunks and the records of all other chunks.
   static Result<ZoneView> make(std::span<const fb::CoreChunk* const> cores,
                                std::vector<RecordView> records, OrdinalRange range = {});
 

@@ -105,7 +105,7 @@ void draw_series(Svg& svg, const Chart& chart, const ChartScale& scale) {
   }
 }
 
-// The last value of every series, and the limit, in their colours beside the end of their lines.
+// The last value of every series, and the limit, in their colours next to the end of their lines.
 void draw_end_values(Svg& svg, const Chart& chart, const ChartScale& scale) {
   struct Label {
     std::string text;

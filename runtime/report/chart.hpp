@@ -8,8 +8,8 @@
 #include "runtime/report/svg.hpp"
 #include "runtime/report/ticks.hpp"
 
-// Values over the time of a run, from zero up, with what explains them: a limit, the zone the robot
-// was in, stretches of time that went wrong. Times are seconds since the start of the run.
+// Values over the time of a run, from zero up, with their context: a limit, the zone the robot was
+// in, spans of time in which something went wrong. Times are seconds since the start of the run.
 namespace zonepack::report {
 
 struct Sample {
@@ -22,7 +22,7 @@ struct ChartSeries {
   std::vector<Sample> samples;  // by time; samples that are not finite break the line
   Color color = kOurs;
   bool steps = true;      // the value holds until the next sample
-  bool compared = false;  // thinner, beneath the others
+  bool compared = false;  // thinner, below the others
 };
 
 struct ChartLimit {
@@ -54,16 +54,15 @@ struct Chart {
   std::vector<ChartShade> shades;       // the first lies on top
   std::vector<TimelineBlock> timeline;  // the zone the robot was in
   Quantity quantity = Quantity::kNumber;
-  std::string unit;  // after numbers (" m"); empty for counts and bytes
-  double duration_s =
-      0;  // the time axis goes from 0 to here, or to the last sample if that is later
+  std::string unit;       // after numbers (" m"); empty for counts and bytes
+  double duration_s = 0;  // end of the time axis, unless the last sample is later
   double width_px = 900;
   double plot_height_px = 190;
 };
 
 Svg draw_chart(const Chart& chart);
 
-// The value at the end of each series, as printed beside it.
+// The value at the end of each series, as printed next to it.
 std::string end_value(const Chart& chart, double value);
 
 }  // namespace zonepack::report

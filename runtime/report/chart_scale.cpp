@@ -12,8 +12,8 @@ bool is_finite(const Sample& sample) noexcept {
   return std::isfinite(sample.t_s) && std::isfinite(sample.value);
 }
 
-// Hands over what falls into one pixel column: all of it, or when it is much its first, least,
-// greatest and last point.
+// Appends the points of one pixel column: all of them, or only the first, least, greatest and last
+// when there are many.
 void flush_column(std::span<const Px> column, std::vector<Px>& out) {
   if (column.size() <= 4) {
     out.insert(out.end(), column.begin(), column.end());
@@ -38,7 +38,7 @@ std::vector<Px> thinned(std::span<const Px> points) {
 std::vector<Px> steps_of(std::span<const Sample> samples, const ChartScale& scale) {
   std::vector<Px> points;
   const auto add = [&points](Px p) {
-    // Of equal neighbours only the two ends are needed.
+    // A run of equal values needs only its two ends.
     const std::size_t n = points.size();
     if (n >= 2 && points[n - 1].y == p.y && points[n - 2].y == p.y) points.pop_back();
     points.push_back(p);

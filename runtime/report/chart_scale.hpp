@@ -8,7 +8,7 @@
 
 namespace zonepack::report {
 
-// Where times and values of a chart stand on the page.
+// Maps times and values of a chart to the page.
 struct ChartScale {
   double left = 0, top = 0, width = 0, height = 0;  // the plot, pixels
   double duration_s = 1;
@@ -24,13 +24,13 @@ struct ChartScale {
 double last_time_s(const Chart& chart) noexcept;
 double largest_value(const Chart& chart) noexcept;
 
-// The lines of a series on the page: one for each stretch without a gap. Steps get a corner a
-// change; what falls into one pixel column is drawn as first, least, greatest and last value, so
-// that a day's log stays small and no peak is lost.
+// The lines of a series on the page: one per stretch without a gap. Steps get a corner per change.
+// The values of one pixel column are reduced to the first, least, greatest and last, so that a
+// day's log stays small and no peak is lost.
 std::vector<std::vector<Px>> series_lines(const ChartSeries& series, const ChartScale& scale);
 
-// Moves labels of this height apart, as little as can be, within [top, bottom]; keeps their order.
-// `centers` need not be sorted.
+// Moves labels of this height apart, as little as possible, within [top, bottom]; keeps their
+// order. `centers` need not be sorted.
 void spread_labels(std::span<double> centers, double height, double top, double bottom);
 
 }  // namespace zonepack::report

@@ -21,12 +21,12 @@ Color mix(Color a, Color b, double weight) noexcept;
 // Black or white, whichever reads better on `background`.
 Color ink_on(Color background) noexcept;
 
-// From pale to deep for share 0 to 1, rising in darkness all the way, so that it reads in grey and
-// by colour-blind eyes; never so deep that black text fails on it.
+// From pale to deep for share 0 to 1. Darkness rises throughout, so that the ramp works in grey and
+// for colour-blind readers; black text stays readable on all of it.
 Color ramp_color(double share) noexcept;
 
-// Colours told apart by colour-blind eyes too (after P. Tol's "muted" scheme); repeats after
-// kHueCount.
+// Colours that colour-blind readers can distinguish, too (after P. Tol's "muted" scheme); repeats
+// after kHueCount.
 inline constexpr std::size_t kHueCount = 9;
 Color hue(std::size_t index) noexcept;
 

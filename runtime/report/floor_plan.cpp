@@ -105,7 +105,7 @@ struct RoutePiece {
   Color color;
 };
 
-// One piece for each stretch of one colour; each begins where the one before ended.
+// One piece per stretch of one colour; each begins where the previous one ended.
 std::vector<RoutePiece> route_pieces(const FloorPlan& plan, const PlanView& view) {
   std::vector<RoutePiece> pieces;
   for (const PlanRoutePoint& point : plan.route) {
@@ -186,7 +186,7 @@ struct Label {
   PxBox box;
 };
 
-// The first form that hides nothing, else the one that hides least.
+// The first variant that hides nothing, else the one that hides least.
 std::optional<Label> choose_label(const PlanZone& zone, const PlanView& view,
                                   const LabelGround& ground) {
   constexpr std::pair<double, double> kSizes[] = {{13, 10.5}, {11, 9}, {12, 0}, {9, 0}, {7, 0}};

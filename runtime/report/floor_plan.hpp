@@ -16,7 +16,7 @@ namespace zonepack::report {
 struct PlanZone {
   std::string name;
   std::string note;  // second line of the label, where it fits; may be empty
-  std::string hint;  // shown while the mouse rests on the zone
+  std::string hint;  // shown while the mouse is over the zone
   Polygon polygon;
   Color fill = kWhite;
 };
@@ -35,13 +35,13 @@ struct FloorPlan {
   std::vector<PlanZone> zones;
   std::vector<Segment2> portals;
   std::vector<Point2> signatures;
-  std::vector<PlanRoutePoint> route;  // as driven by the estimate, in order
+  std::vector<PlanRoutePoint> route;  // as estimated, in order
   std::vector<Point2> true_route;     // empty when unknown
   std::optional<PlanRamp> ramp;
   double width_px = 900;
 };
 
-// Zones without a finite vertex and points that are not finite are left out.
+// Skips zones without a finite vertex and points that are not finite.
 Svg draw_floor_plan(const FloorPlan& plan);
 
 }  // namespace zonepack::report

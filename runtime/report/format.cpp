@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "platform/base/utf8.hpp"
+
 namespace zonepack::report {
 namespace {
 
@@ -19,24 +21,10 @@ constexpr double kBoldFactor = 1.12;
 constexpr std::string_view kThinSpace = "\xE2\x80\x89";
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
 
-bool is_continuation(char c) noexcept { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
-
-// Bytes of the well-formed UTF-8 sequence at the front; 0 when there is none.
-std::size_t utf8_length(std::string_view text) noexcept {
-  const auto lead = static_cast<unsigned char>(text[0]);
-  if (lead < 0x80) return 1;
-  const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
-  if (lead < 0xC2 || lead > 0xF4 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if (!is_continuation(text[i])) return 0;
-  }
-  const auto second = static_cast<unsigned char>(text[1]);
-  const bool overlong = (lead == 0xE0 && second < 0xA0) || (lead == 0xF0 && second < 0x90);
-  const bool surrogate = lead == 0xED && second >= 0xA0;
-  const bool too_high = lead == 0xF4 && second >= 0x90;
-  const bool not_a_character =
-      lead == 0xEF && second == 0xBF && static_cast<unsigned char>(text[2]) >= 0xBE;
-  return overlong || surrogate || too_high || not_a_character ? 0 : length;
+// Bytes of the character at the front; 0 when it is not UTF-8 or not allowed in XML.
+std::size_t character_length(std::string_view text) noexcept {
+  const bool not_a_character = text.starts_with("\xEF\xBF\xBE") || text.starts_with("\xEF\xBF\xBF");
+  return not_a_character ? 0 : utf8_length(text);
 }
 
 }  // namespace
@@ -90,7 +78,7 @@ std::string escape_xml(std::string_view text) {
   std::string escaped;
   escaped.reserve(text.size());
   while (!text.empty()) {
-    const std::size_t length = utf8_length(text);
+    const std::size_t length = character_length(text);
     if (length == 0) {
       escaped += kReplacement;
       text.remove_prefix(1);
@@ -125,7 +113,7 @@ std::string escape_xml(std::string_view text) {
 double text_width_em(std::string_view text, bool bold) noexcept {
   double width = 0;
   for (const char c : text) {
-    if (is_continuation(c)) continue;
+    if (continues_utf8(c)) continue;
     const bool known = c >= ' ' && c <= '~';
     width += known ? kAdvances[static_cast<std::size_t>(c - ' ')] / 100.0 : kOtherAdvance;
   }
@@ -135,9 +123,9 @@ double text_width_em(std::string_view text, bool bold) noexcept {
 std::string shorten_text(std::string_view text, double width_em) {
   constexpr std::string_view kCut = "...";
   if (text_width_em(text) <= width_em) return std::string(text);
-  std::size_t kept = 0;  // bytes, ends before a character
+  std::size_t kept = 0;  // bytes, up to the start of a character
   for (std::size_t next = 1; next < text.size(); ++next) {
-    if (is_continuation(text[next])) continue;
+    if (continues_utf8(text[next])) continue;
     if (text_width_em(text.substr(0, next)) + text_width_em(kCut) > width_em) break;
     kept = next;
   }

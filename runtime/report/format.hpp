@@ -7,8 +7,8 @@
 
 #include "platform/base/byte_count.hpp"
 
-// Numbers and words as they appear in reports: the same text in every locale, so that the same
-// report is the same bytes.
+// Numbers and words as they appear in reports: the same text in every locale, so that equal reports
+// have equal bytes.
 namespace zonepack::report {
 
 // At most `decimals` digits after the point, trailing zeros dropped; "-" when not finite.
@@ -33,10 +33,10 @@ std::string escape_xml(std::string_view text);
 // Width in units of the font size, by the advances of DejaVu Sans (Verdana's are nearly the same).
 double text_width_em(std::string_view text, bool bold = false) noexcept;
 
-// The text, or as much of its start as fits with "..." behind it.
+// The text, or as much of its start as fits, followed by "...".
 std::string shorten_text(std::string_view text, double width_em);
 
-// Lines no wider than `width_em`, broken at blanks only; a longer word stands alone.
+// Lines no wider than `width_em`, broken at blanks only; a longer word gets a line of its own.
 std::vector<std::string> wrap_text(std::string_view text, double width_em);
 
 }  // namespace zonepack::report

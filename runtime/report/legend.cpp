@@ -53,7 +53,7 @@ void draw_mark(Svg& svg, Px left, const LegendItem& item) {
   }
 }
 
-// Walks through the places of the items; draws when `svg` is given.
+// Visits the positions of the items; draws them when `svg` is given.
 double lay_out(Svg* svg, Px corner, double width, std::span<const LegendItem> items) {
   Px at{corner.x, corner.y + kLegendRow / 2};
   for (const LegendItem& item : items) {

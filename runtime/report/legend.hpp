@@ -18,7 +18,7 @@ struct LegendItem {
 
 inline constexpr double kLegendRow = 20;  // pixels
 
-// Draws the items from left to right below `corner`, going on in a new row where `width` ends.
+// Draws the items from left to right below `corner`, starting a new row where `width` ends.
 // Returns the height used, a multiple of kLegendRow.
 double draw_legend(Svg& svg, Px corner, double width, std::span<const LegendItem> items);
 

@@ -9,7 +9,7 @@
 #include "runtime/pack_format/file/geometry.hpp"
 #include "runtime/report/report.hpp"
 
-// What a packed map holds, for drawing; whoever reads the manifest fills it.
+// What a packed map holds, for drawing; the reader of the manifest fills it in.
 namespace zonepack::report {
 
 struct PackedZone {
@@ -18,7 +18,7 @@ struct PackedZone {
   std::uint64_t signatures = 0;
   std::uint64_t features = 0;
   ByteCount charged_bytes = 0;  // while it is in memory: slots x slot size
-  ByteCount stored_bytes = 0;   // to read for that
+  ByteCount stored_bytes = 0;   // read to load it
   std::vector<Point2> signature_positions;
 };
 
@@ -26,7 +26,7 @@ struct PackReport {
   std::string map;      // as the user named it
   std::string version;  // names these very bytes
   std::string payload;  // what is loaded: "features, scan, grid"
-  std::string source;   // where it came from and what packed it
+  std::string source;   // its source and the program that packed it
   std::vector<PackedZone> zones;
   std::vector<Segment2> portals;
   ByteCount table_bytes = 0;  // tables and read buffers, with every zone loaded

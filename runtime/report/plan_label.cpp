@@ -13,7 +13,7 @@ namespace {
 constexpr int kGrid = 28;
 constexpr double kLeastClearance = 1.5;  // pixels between label and border
 constexpr double kEnoughClearance = 10;  // more is no better
-constexpr double kPointCost = 1.5;       // clearance worth giving up to keep one point readable
+constexpr double kPointCost = 1.5;       // clearance to give up for one readable point
 constexpr double kSpareCost = 0.8;
 constexpr double kAround = 4;            // pixels around the label that points should leave free
 constexpr double kOffCenterCost = 0.02;  // a pixel

@@ -14,21 +14,21 @@ struct PxBox {
   Px min, max;
 };
 
-// What labels share the page with.
+// What else is on the page.
 struct LabelGround {
   std::vector<PxBox> taken;  // other labels: never overlapped
-  std::vector<Px> keep;      // better not hidden: routes, portals
-  std::vector<Px> spare;     // not hidden where that costs nothing: signatures
+  std::vector<Px> keep;      // best not hidden: routes, portals
+  std::vector<Px> spare;     // not hidden if that costs nothing: signatures
 };
 
 struct PlacedLabel {
   Px center;
-  std::size_t hidden = 0;  // points to keep beneath it
+  std::size_t hidden = 0;  // points of `keep` below it
 };
 
-// Where a label of this size stands wholly inside the area (rings by the even-odd rule), off what
-// is taken, hiding little, far from the border and central. Nothing when it fits nowhere. Looks at
-// a grid of places: O(ground + grid * (edges + ground within the area's bounds)).
+// Places a label of this size wholly inside the area (rings by the even-odd rule) and off the taken
+// boxes, so that it hides little and is central and far from the border. Nothing when it fits
+// nowhere. Tries a grid of positions: O(ground + grid * (edges + ground within the area's bounds)).
 std::optional<PlacedLabel> place_label(std::span<const std::vector<Px>> rings, double width,
                                        double height, const LabelGround& ground);
 

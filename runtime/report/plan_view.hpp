@@ -8,8 +8,8 @@
 
 namespace zonepack::report {
 
-// Where metres of the map stand on the page: equal scale on both axes, a quarter turn when the map
-// is much taller than wide.
+// Maps metres of the map to the page: equal scale on both axes, with a quarter turn when the map is
+// much taller than wide.
 class PlanView {
  public:
   // Fits `area` into a box of this width and at most this height, with its upper left corner there.

@@ -11,7 +11,7 @@ constexpr double kWidth = 940, kMargin = 20, kInner = kWidth - 2 * kMargin;
 constexpr double kFactHeight = 52, kRowHeight = 19, kCellGap = 18, kCellSize = 11;
 constexpr std::size_t kFactsARow = 4;
 
-// Draws downwards; `y` is the top of what comes next. Without a drawing it only measures.
+// Draws from top to bottom; `y` is the top of the next item. Without a drawing it only measures.
 struct Sheet {
   Svg* svg;
   double y = kMargin;
@@ -76,7 +76,7 @@ struct Sheet {
     }
   }
 
-  // As wide as their text; when that is too much together, the widest gives way.
+  // As wide as their text; when the sum is too large, the widest column shrinks.
   static std::vector<double> column_widths(const Table& table) {
     std::vector<double> widths;
     double total = 0;

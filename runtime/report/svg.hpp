@@ -11,7 +11,7 @@
 
 namespace zonepack::report {
 
-// A place on the page: pixels, x right, y down.
+// A position on the page: pixels, x right, y down.
 struct Px {
   double x = 0;
   double y = 0;
@@ -24,7 +24,7 @@ struct Style {
   double opacity = 1;
   std::string_view dash = {};  // "4 3"
   bool round = false;          // line ends and joins
-  std::string_view hint = {};  // shown while the mouse rests on the shape
+  std::string_view hint = {};  // shown while the mouse is over the shape
 };
 
 enum class Anchor { kStart, kMiddle, kEnd };
@@ -39,8 +39,8 @@ struct TextStyle {
 };
 
 // Writes one drawing as SVG 1.1 text: no script, style sheet, id or outside resource, so that any
-// number of drawings can stand in one page. The same calls give the same bytes. Points that are not
-// finite are left out.
+// number of drawings can share a page. The same calls give the same bytes. Skips points that are
+// not finite.
 class Svg {
  public:
   Svg(double width, double height) : width_(width), height_(height) {}
@@ -50,21 +50,21 @@ class Svg {
 
   void line(Px from, Px to, const Style& style);
   void polyline(std::span<const Px> points, const Style& style);
-  // Rings of one area, holes by the even-odd rule.
+  // Rings of one area; holes by the even-odd rule.
   void polygon(std::span<const std::vector<Px>> rings, const Style& style);
   void rect(Px corner, double width, double height, const Style& style, double radius = 0);
   void circle(Px center, double radius, const Style& style);
   void text(Px baseline, std::string_view text, const TextStyle& style);
 
-  // Until close(), what is drawn outside the box is cut off; coordinates stay those of the drawing.
+  // Until close(), clips everything to the box; coordinates stay those of the drawing.
   void open_clip(Px corner, double width, double height);
   void open_group(std::string_view hint = {});
   void close();
 
-  // Another drawing with its upper left corner here.
+  // Inserts another drawing with its upper left corner here.
   void place(const Svg& drawing, Px corner);
 
-  // The finished document, to stand in a page or (with an XML declaration) as a file.
+  // The finished document, for a page or (with an XML declaration) for a file.
   std::string inline_text() const;
   std::string file_text() const;
 

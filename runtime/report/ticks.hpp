@@ -6,7 +6,7 @@
 
 namespace zonepack::report {
 
-// What the numbers of an axis mean, which decides where ticks stand and how they read.
+// What the numbers of an axis mean, which decides the positions and labels of its ticks.
 enum class Quantity { kNumber, kBytes };
 
 // Round values (1, 2 or 5 times a power of ten; in the largest binary unit for bytes) that cover an
@@ -14,7 +14,7 @@ enum class Quantity { kNumber, kBytes };
 struct Ticks {
   double step = 1;
   std::vector<double> values;       // ascending, all inside [low, high]
-  std::vector<std::string> labels;  // one a value
+  std::vector<std::string> labels;  // one per value
 };
 
 // About `wanted` ticks in [low, high]. Ends that are not finite, or equal, give the single tick 0.

@@ -13,7 +13,7 @@ namespace zonepack::test_support {
 
 using packer::Bytes;
 
-// Bytes of plain values one after the other, as memory holds them.
+// The bytes of plain values in sequence, as in memory.
 template <typename T>
 Bytes bytes_of(std::span<const T> values) {
   const auto bytes = std::as_bytes(values);
@@ -38,7 +38,7 @@ packer::Matrix float_matrix(std::int32_t rows, std::int32_t cols, std::int32_t c
 Bytes png(std::uint32_t width, std::uint32_t height, int bit_depth, int colour_type,
           const Bytes& pixels);
 
-// A whole JPEG of one pixel, told apart from others by the comment it carries.
+// A whole JPEG of one pixel, distinguished from others by its comment.
 Bytes jpeg(std::string_view comment);
 
 // "DEPTHRVL", columns, rows, RVL stream.

@@ -12,25 +12,26 @@
 #include "platform/can_bus.hpp"
 #include "platform/can_errors.hpp"
 
-// What every CanBus must hold, whatever is behind it. A program includes this file once and names
+// What every CanBus must do, whatever is behind it. A program includes this file once and names
 // its rigs with INSTANTIATE_TEST_SUITE_P(NAME, CanBusContract, testing::Values(make_rig, ...)).
 namespace zonepack {
 
 // A bus under test, opened for kIds, and another node on the same wire.
 class CanRig {
  public:
-  static constexpr std::array<CanId, 2> kIds{CanId{0x123, false}, CanId{0x18FF1234, true}};
+  static constexpr std::array<CanId, 2> kIds{CanId{.id = 0x123, .extended = false},
+                                             CanId{.id = 0x18FF1234, .extended = true}};
 
   virtual ~CanRig() = default;
   virtual CanBus& bus() = 0;
   // By the other node; false when it cannot.
   virtual bool send(const CanFrame& frame) = 0;
-  // Until what was sent has arrived, and what happened to the interface was noticed.
+  // Waits until sent frames have arrived and changes of the interface have been noticed.
   virtual void settle() = 0;
   virtual std::int64_t now_ns() = 0;  // on the clock of the stamps
   virtual void take_down() = 0;
   virtual void bring_up() = 0;
-  // What hardware or kernel cannot do is left out of the contract there.
+  // The contract skips what the hardware or kernel cannot do.
   virtual bool takes_fd() const { return true; }
   virtual bool can_inject_errors() const { return true; }
   virtual bool can_remove() const { return true; }
@@ -66,7 +67,7 @@ class CanBusContract : public testing::TestWithParam<CanRigMaker> {
   }
   std::vector<CanFrame> receive(std::size_t most = 600) { return receive(rig_->bus(), most); }
 
-  // What the bus says once it has noticed.
+  // The status once the bus has noticed a change.
   CanBusStatus status() {
     receive(0);
     return rig_->bus().status();

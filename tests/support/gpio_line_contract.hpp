@@ -11,12 +11,12 @@
 
 #include "platform/gpio_line.hpp"
 
-// What every GpioPort must hold, whatever is behind it. A program includes this file once and names
+// What every GpioPort must do, whatever is behind it. A program includes this file once and names
 // its rigs with INSTANTIATE_TEST_SUITE_P(NAME, GpioLineContract, testing::Values(make_rig, ...)).
 namespace zonepack {
 
-// A port under test with a chip of 8 lines, all low, of which line 3 is named "door"; and a hand on
-// their other ends.
+// A port under test with a chip of 8 lines, all low, of which line 3 is named "door", with control
+// of their other ends.
 class GpioRig {
  public:
   virtual ~GpioRig() = default;
@@ -42,24 +42,27 @@ class GpioLineContract : public testing::TestWithParam<GpioRigMaker> {
     if (!rig_) GTEST_SKIP() << "no such chip here";
   }
 
-  GpioLineName name(const std::string& line) { return {rig_->label(), line}; }
+  GpioLineName name(const std::string& line) { return {.chip = rig_->label(), .line = line}; }
 
   std::unique_ptr<GpioInput> input(const std::string& line, std::int64_t debounce_ns = 0,
                                    bool active_low = false) {
-    auto opened =
-        rig_->port().open(GpioInputSettings{name(line), active_low, GpioBias::kAsIs, debounce_ns});
+    auto opened = rig_->port().open(GpioInputSettings{.name = name(line),
+                                                      .active_low = active_low,
+                                                      .bias = GpioBias::kAsIs,
+                                                      .debounce_ns = debounce_ns});
     EXPECT_TRUE(opened.ok()) << explain_gpio(rig_->port(), name(line), opened.error());
     return opened ? std::move(opened).value() : nullptr;
   }
 
   std::unique_ptr<GpioOutput> output(const std::string& line, bool active,
                                      bool active_low = false) {
-    auto opened = rig_->port().open(GpioOutputSettings{name(line), active_low, active});
+    auto opened = rig_->port().open(
+        GpioOutputSettings{.name = name(line), .active_low = active_low, .active = active});
     EXPECT_TRUE(opened.ok()) << explain_gpio(rig_->port(), name(line), opened.error());
     return opened ? std::move(opened).value() : nullptr;
   }
 
-  // What has settled; a moment later, as kernels have threads that read lines.
+  // The settled edges, taken a moment later, since kernels read lines on threads of their own.
   std::vector<GpioEdge> edges(GpioInput& from, std::size_t most = 64) {
     rig_->pass(20 * kMs);
     std::vector<GpioEdge> into(most);
@@ -91,7 +94,7 @@ TEST_P(GpioLineContract, AnOutputIsAsAskedForFromTheStartAndThenAsSet) {
   }
 }
 
-TEST_P(GpioLineContract, AnInputTellsEachChangeInItsOrderStampedWhenItHappened) {
+TEST_P(GpioLineContract, AnInputReportsEachChangeInOrderStampedWhenItHappened) {
   const auto line = input("4");
   ASSERT_TRUE(line);
   EXPECT_EQ(edges(*line).size(), 0u);

@@ -9,7 +9,7 @@
 namespace zonepack::test_support {
 namespace {
 
-class MemoryFile : public packer::FileSource {
+class MemoryFile : public packer::MapFile {
  public:
   explicit MemoryFile(std::span<const std::byte> bytes) : bytes_(bytes) {}
   std::uint64_t size() const override { return bytes_.size(); }
@@ -33,10 +33,10 @@ std::vector<std::string> MemoryFolder::names() const {
   return names;
 }
 
-Result<std::unique_ptr<packer::FileSource>> MemoryFolder::open(const std::string& name) const {
+Result<std::unique_ptr<packer::MapFile>> MemoryFolder::open(const std::string& name) const {
   const auto found = files.find(name);
   if (found == files.end()) return ErrorCode::kNotFound;
-  return std::unique_ptr<packer::FileSource>(std::make_unique<MemoryFile>(found->second));
+  return std::unique_ptr<packer::MapFile>(std::make_unique<MemoryFile>(found->second));
 }
 
 MemoryFolder MemoryFolder::copy_of(const std::filesystem::path& folder) {

@@ -8,17 +8,17 @@
 #include <vector>
 
 #include "packer/record/record.hpp"
-#include "packer/verify/map_source.hpp"
+#include "packer/verify/map_files.hpp"
 
 namespace zonepack::test_support {
 
 // A map's folder in memory, whose bytes a test may change between reads.
-class MemoryFolder : public packer::MapSource {
+class MemoryFolder : public packer::MapFiles {
  public:
   std::map<std::string, packer::Bytes> files;
 
   std::vector<std::string> names() const override;
-  Result<std::unique_ptr<packer::FileSource>> open(const std::string& name) const override;
+  Result<std::unique_ptr<packer::MapFile>> open(const std::string& name) const override;
 
   // A copy of a folder's files.
   static MemoryFolder copy_of(const std::filesystem::path& folder);

@@ -14,7 +14,7 @@
 
 namespace zonepack::test_support {
 
-// The byte that stands at an offset of a numbered file: no two 4 KiB blocks are alike.
+// The byte at an offset of a numbered file: no two 4 KiB blocks are alike.
 constexpr std::byte number_at(std::uint64_t offset) {
   return static_cast<std::byte>((offset * 31 + offset / 4096 * 7 + offset / 262144) & 0xFF);
 }

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <vector>
 
-// What the page cache holds of a file, as mincore tells it.
+// What the page cache holds of a file, according to mincore.
 namespace zonepack::test_support {
 
 inline std::uint64_t cached_bytes(const std::filesystem::path& path) {
@@ -26,10 +26,10 @@ inline std::uint64_t cached_bytes(const std::filesystem::path& path) {
   ::close(fd);
   if (map == MAP_FAILED) return 0;
   std::vector<unsigned char> pages((size + page - 1) / page);
-  const int told = ::mincore(map, size, pages.data());
+  const int failed = ::mincore(map, size, pages.data());
   ::munmap(map, size);
   std::uint64_t bytes = 0;
-  for (const unsigned char in_memory : pages) bytes += told == 0 && (in_memory & 1) ? page : 0;
+  for (const unsigned char in_memory : pages) bytes += failed == 0 && (in_memory & 1) ? page : 0;
   return bytes;
 }
 

@@ -113,7 +113,7 @@ void write_features(WrittenDatabase& database, const FixtureSchema& schema,
 
 void write_links(WrittenDatabase& database, const FixtureSchema& schema, const SignatureRecord& r) {
   Insert row(database, "Link");
-  // Last link first: a reader must not count on the order of rows.
+  // Last link first: a reader must not rely on the order of rows.
   for (auto at = r.links.rbegin(); at != r.links.rend(); ++at) {
     const packer::Link& link = *at;
     row.integer("from_id", r.id)

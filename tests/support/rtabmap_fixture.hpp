@@ -14,13 +14,13 @@
 // Small RTAB-Map databases made by tests, in the schema of any version from 0.11 to 0.23.
 namespace zonepack::test_support {
 
-// What a database shall hold. A signature's `pose` goes to Admin.opt_poses, its other fields to the
-// tables; weight -9 makes a deleted node.
+// What a database should hold. A signature's `pose` goes to Admin.opt_poses, its other fields to
+// the tables; weight -9 makes a deleted node.
 struct RtabmapFixture {
   std::string version = "0.23.8";
   std::vector<packer::SignatureRecord> signatures;
   std::map<std::int32_t, packer::Transform> extra_poses;  // landmarks, or nodes that do not exist
-  bool optimised_poses = true;                            // false: as after a crash, none are saved
+  bool optimised_poses = true;                            // false: none are saved, as after a crash
   std::optional<packer::OptimisedMap> optimised_map;
   std::string parameters = "Kp/DetectorStrategy:8;Kp/MaxFeatures:400";
 };

@@ -14,7 +14,7 @@
 
 namespace zonepack::test_support {
 
-// A service manager that keeps the files it is sent.
+// A service manager that keeps the files sent to it.
 class ServiceManager {
  public:
   explicit ServiceManager(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_DGRAM, 0)) {
@@ -27,7 +27,7 @@ class ServiceManager {
     unsetenv("NOTIFY_SOCKET");
   }
 
-  // What it would hand to a zoned that is started now.
+  // The files that it would pass to a zoned started now.
   std::vector<HandedFile> hand_over() {
     char text[256];
     for (;;) {

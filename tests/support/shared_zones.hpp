@@ -18,7 +18,7 @@ class SharedZones {
   // Lays out the memory, of shared_map_bytes(zones, slots).
   SharedZones(std::span<std::byte> memory, std::uint32_t zones, std::uint32_t slots);
 
-  // From here on only every other slot is used; no zone may be there yet.
+  // From now on uses only every other slot; no zone may be there yet.
   void leave_gaps();
 
   // The slots that chunks take.

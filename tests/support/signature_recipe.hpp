@@ -50,8 +50,8 @@ packer::Link make_link(std::int32_t to, std::int32_t type, const packer::Transfo
 // labels, two sessions, and three nodes without an optimised pose.
 RtabmapFixture one_of_everything(const std::string& version);
 
-// What a reader must give for a fixture: sorted by id, deleted nodes gone, and only what the schema
-// holds.
+// What a reader must return for a fixture: sorted by id, without deleted nodes, and only what the
+// schema holds.
 std::vector<packer::SignatureRecord> expected_records(const RtabmapFixture& fixture);
 
 // The first field in which two records differ, bit for bit ("scan.data"); empty when they are

@@ -81,7 +81,7 @@ void SmallMap::add_zone(const std::string& name, float left,
   std::vector<fb::Node>& nodes = content.nodes.emplace_back();
   for (const SignatureRecipe& recipe : recipes) {
     packer::SignatureRecord record = make_signature(recipe);
-    // Noise, which LZ4 leaves as it is: a raw chunk.
+    // Noise, which LZ4 cannot compress: a raw chunk.
     if (recipe.image == SignatureRecipe::Image::kPng) record.image = noise(4096);
     const packer::Transform T = record.pose ? *record.pose : *record.odometry_pose;
     nodes.emplace_back(T[3], T[7], T[11], std::atan2(T[4], T[0]), record.id);

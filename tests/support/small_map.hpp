@@ -10,7 +10,7 @@
 namespace zonepack::test_support {
 
 // Two rooms of 4 m x 4 m, a (x 0 to 4) and b (x 4 to 8), with a door at y 1.5 to 2.5, and the
-// content of their manifest to be told wrongly by tests. Packs hold signatures as the recipes say.
+// content of their manifest, for tests to falsify. Packs hold signatures as the recipes say.
 class SmallMap {
  public:
   // Signature 1 in a, 2 in b, linked both ways: a little of every payload kind, compressed chunks
@@ -31,7 +31,7 @@ class SmallMap {
   void add_zone(const std::string& name, float left, const std::vector<SignatureRecipe>& recipes);
 };
 
-// Puts a right digest behind the manifest's bytes, whatever they say.
+// Appends a correct digest to the manifest's bytes, whatever they say.
 void seal_manifest(packer::Bytes& file);
 
 }  // namespace zonepack::test_support

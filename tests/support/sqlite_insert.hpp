@@ -16,7 +16,7 @@
 
 namespace zonepack::test_support {
 
-// A SQLite file being written; throws when SQLite does not like something.
+// A SQLite file being written; throws on any error of SQLite.
 class WrittenDatabase {
  public:
   explicit WrittenDatabase(const std::filesystem::path& path);
@@ -27,8 +27,8 @@ class WrittenDatabase {
   std::shared_ptr<sqlite3> handle_;
 };
 
-// An INSERT whose columns are named one by one; each value is bound as it comes. What is empty
-// stays NULL.
+// An INSERT whose columns are named one by one; values are bound in turn. Empty values stay
+// NULL.
 class Insert {
  public:
   Insert(WrittenDatabase& database, std::string table);

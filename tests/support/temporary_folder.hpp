@@ -10,7 +10,7 @@
 
 namespace zonepack::test_support {
 
-// A folder of its own below the system's temporary folder, gone with its contents at the end.
+// A new folder below the system's temporary folder; the destructor removes it with its contents.
 class TemporaryFolder {
  public:
   TemporaryFolder() {

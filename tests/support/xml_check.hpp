@@ -8,11 +8,11 @@
 
 namespace zonepack {
 
-// A strict little XML reader: says what is wrong with a document, or nothing. Knows elements,
-// quoted attributes, the five named entities and character references; all that reports use.
+// A small strict XML reader: returns what is wrong with a document, or "". Knows elements, quoted
+// attributes, the five named entities and character references; reports use nothing else.
 class XmlCheck {
  public:
-  static std::string fault_of(std::string_view text) { return XmlCheck(text).run(); }
+  static std::string problem_in(std::string_view text) { return XmlCheck(text).run(); }
 
  private:
   explicit XmlCheck(std::string_view text) : text_(text) {}

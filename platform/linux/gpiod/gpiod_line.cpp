@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// GPIO lines by libgpiod 1.6 and the first version of the kernel's interface; for libgpiod 2
-// another file takes the place of this one. Nothing else includes <gpiod.h>.
+// GPIO lines through libgpiod 1.6 and the first version of the kernel's interface; another file
+// would replace this one for libgpiod 2. Nothing else includes <gpiod.h>.
 #include <dirent.h>
 #include <gpiod.h>
 #include <linux/gpio.h>
@@ -23,8 +23,8 @@ namespace zonepack {
 namespace {
 
 constexpr const char* kConsumer = "zoned";
-constexpr std::size_t kKernelEvents = 16;  // of a line that wait; the kernel drops what comes then
-constexpr std::size_t kMostLooks = 4 * kKernelEvents;  // at the changes of a line, in one take()
+constexpr std::size_t kKernelEvents = 16;  // that wait for a line; the kernel drops later ones
+constexpr std::size_t kMostLooks = 4 * kKernelEvents;  // at changes of a line, in one take()
 
 struct CloseChip {
   void operator()(gpiod_chip* chip) const noexcept { gpiod_chip_close(chip); }
@@ -41,8 +41,8 @@ Error last_error() noexcept {
   return {ErrorCode::kIo, errno};
 }
 
-// One after the other instead of libgpiod's lookup: that gives up at a chip it may not open, and
-// takes the first of several chips that bear the same label.
+// Tries the chips one by one: libgpiod's own lookup gives up at a chip that it may not open, and
+// takes the first of several chips with the same label.
 Result<Chip> find_chip(const std::string& name) {
   if (name.starts_with('/')) {
     Chip chip(gpiod_chip_open(name.c_str()));
@@ -116,7 +116,7 @@ class Input final : public GpioInput {
   Result<std::size_t> take(std::span<GpioEdge> into) noexcept override {
     std::size_t count = 0;
     for (std::size_t looked = 0; looked < kMostLooks && count < into.size(); ++looked) {
-      const std::int64_t now_ns = monotonic_ns();  // before the queue is seen to be empty
+      const std::int64_t now_ns = monotonic_ns();  // read before the queue is found empty
       const auto raw = next();
       if (!raw) return raw.error();
       const auto edge = *raw ? filter_.change(**raw) : filter_.settle(now_ns);
@@ -127,14 +127,15 @@ class Input final : public GpioInput {
   }
 
  private:
-  // The next change of the line; nothing when all are taken.
+  // The next change of the line; nothing when all have been taken.
   Result<std::optional<GpioEdge>> next() noexcept {
     if (next_ == read_) {
       if (const auto filled = fill(); !filled) return filled.error();
     }
     if (next_ < read_) return std::optional(events_[next_++]);
     if (!look_again_) return std::optional<GpioEdge>();
-    // Its level counts, whatever the queue lost; asked before the first edge, and after many.
+    // The level of the line counts, whatever the queue lost; read before the first edge, and after
+    // many edges.
     const int level = gpiod_line_get_value(line_.line);
     if (level < 0) return last_error();
     look_again_ = false;
@@ -142,8 +143,8 @@ class Input final : public GpioInput {
     return std::optional(GpioEdge{monotonic_ns(), level == 1});
   }
 
-  // As the kernel tells them (linux/gpio.h). libgpiod's own call fills a timespec, which a library
-  // of a 32-bit Debian has shorter than a program built with 64-bit times.
+  // Reads the kernel's events directly (linux/gpio.h). libgpiod's own call fills a timespec, which
+  // is shorter in a library of 32-bit Debian than in a program built with 64-bit times.
   Result<void> fill() noexcept {
     next_ = read_ = 0;
     pollfd waiting{gpiod_line_event_get_fd(line_.line), POLLIN | POLLPRI, 0};
@@ -158,7 +159,7 @@ class Input final : public GpioInput {
     const std::int64_t now_ns = monotonic_ns();
     for (std::size_t i = 0; i < read_; ++i) {
       const auto stamp_ns = static_cast<std::int64_t>(raw[i].timestamp);
-      // Kernels before 5.7 stamp by the wall clock, which is far ahead.
+      // Kernels before 5.7 stamp with the wall clock, which is far ahead.
       events_[i] = {std::min(stamp_ns, now_ns), raw[i].id == GPIOEVENT_EVENT_RISING_EDGE};
     }
     return {};

@@ -30,7 +30,7 @@ std::uint64_t chunks_of(const fb::Zone& zone) {
   return count;
 }
 
-// By ZoneId; ids beyond the last zone mark nothing.
+// Marks by ZoneId; ignores ids beyond the last zone.
 std::vector<bool> marked(std::span<const ZoneId> zones, std::size_t count) {
   std::vector<bool> marks(count, false);
   for (const ZoneId zone : zones) {
@@ -40,6 +40,17 @@ std::vector<bool> marked(std::span<const ZoneId> zones, std::size_t count) {
 }
 
 }  // namespace
+
+ChunkBytes chunk_bytes(const fb::Zone& zone, PayloadMask wanted) noexcept {
+  const PayloadMask mask = payload_closure(wanted, zone.grid_needs_scan());
+  ChunkBytes bytes;
+  for (const fb::PayloadBytes* payload : *zone.payloads()) {
+    if ((mask & mask_of(static_cast<fb::PayloadKind>(payload->kind()))) == 0) continue;
+    bytes.stored += payload->stored();
+    bytes.decoded += payload->decoded();
+  }
+  return bytes;
+}
 
 MapCosts map_costs(const fb::Manifest& manifest, PayloadMask wanted) {
   MapCosts costs;

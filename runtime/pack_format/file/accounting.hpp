@@ -12,19 +12,19 @@
 #include "runtime/pack_format/ids.hpp"
 #include "runtime/pack_format/limits.hpp"
 
-// What a map costs in memory, counted the same way by the packer's plan and by the robot, so that a
-// budget which plan promises is a budget which the robot keeps.
+// What a map costs in memory, counted the same way by the packer's plan and by the robot, so that
+// the robot keeps any budget that plan promises.
 namespace zonepack {
 
-// Per item, what the runtime's own tables take; a test holds them against the real allocations.
+// What the runtime's own tables take per item; a test compares them with the real allocations.
 inline constexpr ByteCount kTableBytesPerZone = 640;    // catalog, residency, keeper, graph
-inline constexpr ByteCount kTableBytesPerNameByte = 4;  // two names, the pack's, rounding
+inline constexpr ByteCount kTableBytesPerNameByte = 4;  // two names, the pack's name, rounding
 inline constexpr ByteCount kTableBytesPerRing = 96;
 inline constexpr ByteCount kTableBytesPerVertex = 32;
 inline constexpr ByteCount kTableBytesPerPortal = 192;
 inline constexpr ByteCount kTableBytesPerSlot = 96;  // chain, places of chunks
 inline constexpr ByteCount kTableBytesPerMap = 16 * kKiB;
-// Stored bytes of chunks on their way into slots; the index of the pack being read comes on top.
+// Stored bytes of chunks being loaded into slots; the index of the pack being read comes on top.
 inline constexpr ByteCount kReadBufferBytes = 64 * kKiB;
 inline constexpr ByteCount kIndexBytesPerChunk = 96;  // its entry, and where it was loaded to
 inline constexpr ByteCount kIndexBytesPerPack = 512;
@@ -32,26 +32,33 @@ inline constexpr ByteCount kIndexBytesPerPack = 512;
 using ZonePair = std::pair<ZoneId, ZoneId>;
 
 struct MapCosts {
-  ByteCount fixed_bytes = 0;              // beside slots and their tables
+  ByteCount fixed_bytes = 0;              // besides slots and their tables
   std::vector<std::uint32_t> zone_slots;  // by ZoneId, for the payload asked for
-  std::vector<ZonePair> neighbours;       // of every portal
+  std::vector<ZonePair> neighbours;       // one per portal
 };
+
+// Bytes of a zone's chunks of these kinds, and of the kinds that they imply (payload_closure).
+struct ChunkBytes {
+  ByteCount stored = 0;
+  ByteCount decoded = 0;
+};
+ChunkBytes chunk_bytes(const fb::Zone& zone, PayloadMask wanted) noexcept;
 
 // Costs of a checked manifest when these kinds are loaded.
 MapCosts map_costs(const fb::Manifest& manifest, PayloadMask wanted);
 
-// Everything charged when `slots` slots exist.
+// All charged bytes when `slots` slots exist.
 constexpr ByteCount charged_with(ByteCount fixed_bytes, std::uint64_t slots) noexcept {
   return fixed_bytes + slots * (kSlotBytes + kTableBytesPerSlot);
 }
 
-// The most slots that a budget pays for beside what is fixed.
+// The most slots that a budget covers besides the fixed bytes.
 constexpr std::uint64_t slots_within(ByteCount budget, ByteCount fixed_bytes) noexcept {
   return budget < fixed_bytes ? 0 : (budget - fixed_bytes) / (kSlotBytes + kTableBytesPerSlot);
 }
 
-// The zone and the neighbour that take most together beside the pinned zones, which are held
-// anyway; `amounts` are slots or signatures by ZoneId.
+// The zone and the neighbour that together take most besides the pinned zones, which are always
+// held; `amounts` are slots or signatures by ZoneId.
 struct LargestPair {
   std::uint64_t amount = 0;
   ZoneId zone_a = kNoZone;
@@ -67,7 +74,7 @@ struct SmallestBudget {
 };
 
 // The smallest budget under which every zone fits together with any one neighbour, all pinned
-// zones, tables and read buffers: the one place that says so, for plan and for the robot.
+// zones, tables and read buffers. Both plan and the robot use this function.
 SmallestBudget smallest_budget(const MapCosts& costs, std::span<const ZoneId> pinned);
 
 }  // namespace zonepack

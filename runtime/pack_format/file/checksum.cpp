@@ -4,7 +4,7 @@
 #include <sodium/crypto_generichash_blake2b.h>
 #include <xxhash.h>
 #if __has_include(<xxh_x86dispatch.h>)
-#include <xxh_x86dispatch.h>  // the same values, with the widest instructions of this machine
+#include <xxh_x86dispatch.h>  // same values, using the widest instructions of this machine
 #endif
 
 namespace zonepack {

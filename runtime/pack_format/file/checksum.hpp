@@ -10,8 +10,8 @@
 
 #include "platform/base/byte_span.hpp"
 
-// The two checksums of the format. XXH3-64 finds accidents and costs next to nothing on every load;
-// BLAKE2b finds intent and names packs by content.
+// The two checksums of the format. XXH3-64 detects accidental damage and costs next to nothing per
+// load; BLAKE2b detects intentional changes and names packs by content.
 namespace zonepack {
 
 using Digest16 = std::array<std::uint8_t, 16>;
@@ -21,7 +21,7 @@ std::uint64_t xxh3(ByteSpan bytes) noexcept;
 
 Digest16 blake2b_16(ByteSpan bytes) noexcept;
 
-// Of the parts, one after the other.
+// Of the concatenated parts.
 Digest32 blake2b_32(std::initializer_list<ByteSpan> parts) noexcept;
 
 // Lower-case hexadecimal.

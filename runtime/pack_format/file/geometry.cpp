@@ -65,7 +65,7 @@ Side side_of(const Polygon& polygon, Point2 point) noexcept {
   bool border = false;
   for_each_edge(polygon, [&](const Segment2& edge) {
     border = border || distance_m(edge, point) <= kBorderTolerance_m;
-    // Even-odd rule: holes cross the ray too and turn inside back to outside.
+    // Even-odd rule: edges of holes cross the ray too and turn inside back into outside.
     if ((edge.p.y_m > point.y_m) != (edge.q.y_m > point.y_m)) {
       const double t = (point.y_m - edge.p.y_m) / (edge.q.y_m - edge.p.y_m);
       if (point.x_m < edge.p.x_m + t * (edge.q.x_m - edge.p.x_m)) inside = !inside;

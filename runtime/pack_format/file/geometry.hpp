@@ -30,7 +30,7 @@ struct Polygon {
   std::vector<Ring> holes;
 };
 
-// How a point lies to a polygon. On the border: within kBorderTolerance_m of an edge.
+// Where a point is relative to a polygon. On the border: within kBorderTolerance_m of an edge.
 enum class Side { kOutside, kBorder, kInside };
 inline constexpr double kBorderTolerance_m = 1e-9;
 
@@ -39,7 +39,7 @@ Side side_of(const Polygon& polygon, Point2 point) noexcept;
 // Twice the signed area; positive when counter-clockwise.
 double twice_signed_area(const Ring& ring) noexcept;
 
-// Square metres, holes taken off.
+// Square metres, without the holes.
 double area_m2(const Polygon& polygon) noexcept;
 
 Box2 bounds(const Ring& ring) noexcept;

@@ -14,7 +14,7 @@
 #include "runtime/pack_format/limits.hpp"
 #include "runtime/pack_format/manifest_generated.h"
 
-// The frame of the manifest: header, one FlatBuffer, tail with the digest of all before it.
+// The layout of the manifest file: header, one FlatBuffer, tail with the digest of both.
 namespace zonepack {
 
 inline constexpr std::string_view kManifestName = "manifest.zpm";
@@ -47,7 +47,7 @@ inline constexpr ByteCount kMaxManifestFileBytes =
 // tables, file names without a path. `file` must be aligned to 8. The result points into `file`.
 Result<const fb::Manifest*> check_manifest(ByteSpan file) noexcept;
 
-// The digest at the end of a checked manifest file: names the version of the map.
+// The digest at the end of a checked manifest file, which names the version of the map.
 Digest32 manifest_digest(ByteSpan file) noexcept;
 
 Polygon polygon_of(const fb::Zone& zone);
@@ -56,8 +56,7 @@ Polygon polygon_of(const fb::Zone& zone);
 // `payload_mask` without bit 0, squeezed together, are its index.
 std::uint32_t slot_table_index(PayloadMask wanted, PayloadMask packed) noexcept;
 
-// Slots that the zone charges when these kinds are loaded (kinds that were not packed cost
-// nothing).
+// Slots that the zone charges when these kinds are loaded; kinds that were not packed cost nothing.
 std::uint32_t zone_slots(const fb::Manifest& manifest, const fb::Zone& zone,
                          PayloadMask wanted) noexcept;
 

@@ -9,14 +9,14 @@
 #include "runtime/pack_format/file/checksum.hpp"
 #include "runtime/pack_format/pack_generated.h"
 
-// The frame of a pack file: header, chunks, index, tail. FORMAT.md draws it byte by byte.
+// The layout of a pack file: header, chunks, index, tail. FORMAT.md describes it byte by byte.
 namespace zonepack {
 
 inline constexpr std::uint16_t kPackMajor = 1;  // other majors are refused
 inline constexpr std::uint16_t kPackMinor = 0;  // greater minors are read: they only add
 
 using Magic = std::array<std::uint8_t, 8>;
-// As PNG does it: a byte that text tools damage, a name, both kinds of line end, end of file.
+// As in PNG: a byte that text tools damage, a name, both kinds of line end, end of file.
 inline constexpr Magic kPackMagic = {0x89, 'Z', 'P', 'K', '\r', '\n', 0x1A, '\n'};
 inline constexpr Magic kPackEndMagic = {'\n', 0x1A, '\n', '\r', 'K', 'P', 'Z', 0x89};
 
@@ -39,7 +39,7 @@ struct PackTail {
 };
 static_assert(sizeof(PackTail) == 64);
 
-// The digest that stands in the tail, in the manifest and, shortened, in the file's name.
+// The digest in the tail, in the manifest and, shortened, in the file's name.
 Digest32 pack_digest(const PackHeader& header, ByteSpan index, const PackTail& tail) noexcept;
 
 // Reads and checks the tail of a pack of `file_size` bytes: magic, version, places inside the file.
@@ -54,12 +54,12 @@ Result<const fb::PackIndex*> check_index(ByteSpan header_16_bytes, ByteSpan inde
 // Checks the stored bytes of a chunk (length, XXH3) and decodes them to exactly
 // entry.decoded_size() bytes at `out`, which must be aligned to 16 and have kSlotBytes of room;
 // then checks the structure. No allocation. `stored` must be private memory: bytes that change
-// meanwhile defeat the checks. A raw chunk may stand at `out` already.
+// meanwhile defeat the checks. A raw chunk may already be at `out`.
 Result<ByteSpan> decode_chunk(const fb::ChunkEntry& entry, ByteSpan stored,
                               std::byte* out) noexcept;
 
-// Where the next chunk goes when chunks fill slots back to back in index order: each behind the one
-// before if it fits the same slot, else at the start of a new one.
+// Places chunks into slots back to back in index order: each after the previous one if it fits into
+// the same slot, else at the start of a new one.
 class Placement {
  public:
   struct Place {
@@ -67,7 +67,8 @@ class Placement {
     std::uint32_t offset;  // bytes into the slot
   };
   Place add(std::uint32_t decoded_size) noexcept;
-  // The longest chunk that still fits the last slot; 0 before the first and when it is full.
+  // The size of the longest chunk that still fits the last slot; 0 without slots and when it is
+  // full.
   std::uint64_t room() const noexcept;
   std::uint32_t slots() const noexcept { return slots_; }
 

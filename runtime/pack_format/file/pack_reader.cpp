@@ -19,7 +19,7 @@ Result<PackReader> PackReader::open(const std::string& path, const Digest32* exp
   if (file->size() < sizeof(PackHeader) + sizeof(PackTail)) {
     return {ErrorCode::kTruncated, static_cast<std::int64_t>(file->size())};
   }
-  // The end first, which is looked at first; a short file in one request.
+  // Requests the end first, because it is read first; a short file takes one request.
   const std::uint64_t end_bytes = std::min<std::uint64_t>(file->size(), kUsualIndexBytes);
   if (!file->reads_ahead()) soon = 0;
   const bool direct = file->mode() == ReadMode::kDirect;

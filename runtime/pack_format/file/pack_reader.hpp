@@ -13,7 +13,7 @@
 
 namespace zonepack {
 
-// How a pack is read: see StorageFile::open(), which says what becomes of kDirect without a queue.
+// How a pack is read; StorageFile::open() says what kDirect means without a queue.
 struct PackReading {
   // NOLINTNEXTLINE(google-explicit-constructor): a mode is a way of reading
   PackReading(ReadMode how = ReadMode::kCached, ReadQueue* by = nullptr) : mode(how), queue(by) {}
@@ -24,14 +24,14 @@ struct PackReading {
 
 // An open pack with its index read and checked.
 //
-// Header, index and tail are copied out as the mode says: mapped or, by default, by pread, which is
-// 2 us where a window mapped and unmapped is 20 to 70 us and interrupts every core that runs one of
-// our threads, the control thread's too.
+// Header, index and tail are copied out as the mode says: from mapped windows or, by default, by
+// pread, which takes 2 us, while mapping and unmapping a window takes 20 to 70 us and interrupts
+// every core that runs a thread of this process, including the control thread.
 class PackReader {
  public:
-  // With `expected`, kMismatch for a whole pack that is another than the one asked for. `soon`:
-  // bytes from the front that the caller reads next by windows; where the mode reads ahead they
-  // begin to come together with the index, as many as front_asked() tells.
+  // With `expected`: kMismatch for a whole pack with another digest. `soon`: bytes from the front
+  // that the caller reads next by windows; where the mode reads ahead, fetching them starts
+  // together with the index, and front_asked() returns how many were requested.
   static Result<PackReader> open(const std::string& path, const Digest32* expected = nullptr,
                                  const PackReading& reading = {}, std::uint64_t soon = 0);
 
@@ -59,7 +59,7 @@ class PackReader {
 class DecodedPack {
  public:
   // Errors: those of reading and decoding, and kMismatch of ZoneView; detail is the file offset.
-  // Only chunks that hold something of the range are decoded.
+  // Decodes only chunks that hold something of the range.
   static Result<DecodedPack> decode(const PackReader& pack, PayloadMask wanted,
                                     OrdinalRange range = {});
 

@@ -21,7 +21,7 @@ void* counted_or_throw(std::size_t bytes) {
 
 }  // namespace
 
-// All of them, so that what one takes is given back to its own kind under sanitizers too.
+// Replaces all forms, so that each allocation is freed by its own kind under sanitizers, too.
 void* operator new(std::size_t bytes) { return counted_or_throw(bytes); }
 void* operator new[](std::size_t bytes) { return counted_or_throw(bytes); }
 void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept { return counted(bytes); }

@@ -5,7 +5,7 @@
 
 namespace zonepack::testing_support {
 
-// Counts what the whole program allocates with new while one of these exists.
+// Counts what the whole program allocates with new during the object's lifetime.
 class AllocationCount {
  public:
   AllocationCount();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `zonepack build` says when it cannot do its work, and what it leaves behind.
+// What `zonepack build` prints when it fails, and what it leaves behind.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -103,7 +103,7 @@ TEST(BuildErrors, SayWhenTheFolderCannotBeMade) {
   EXPECT_EQ(bytes_of_file(packer.path("map")), "a file in the way");
 }
 
-// A limit on the length of files stands for a full disk: writing fails in the middle of a pack.
+// A limit on file size stands in for a full disk: writing fails in the middle of a pack.
 TEST(BuildErrors, LeaveTheOldMapWhenTheDiskIsFull) {
   const Packer packer;
   packer.write_database(four_signatures());

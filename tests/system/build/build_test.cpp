@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(All, BuildOfSchema,
                                            "0.17.6", "0.18.0", "0.20.0", "0.22.1", "0.23.8"));
 
 // Scans of all 12 formats, grids in the plane and in space, every encoding of depth, descriptors of
-// both kinds, stereo, priors, landmarks: as SQLite and zlib alone tell them.
+// both kinds, stereo, priors, landmarks: compared with what SQLite and zlib alone read.
 TEST(Build, CarriesOneOfEverythingBitForBit) {
   const Packer packer;
   packer.write_database(test_support::one_of_everything("0.23.8"));

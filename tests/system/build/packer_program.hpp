@@ -73,7 +73,7 @@ class Packer {
     test_support::write_rtabmap_database(path("map.db"), fixture);
   }
 
-  // zonepack with the folder as its own; standard error comes with the output.
+  // Runs zonepack in the folder; the output includes standard error.
   Outcome zonepack(const std::string& arguments) const {
     return run("cd " + folder_.path().string() + " && " ZONEPACK_PROGRAM " " + arguments + " 2>&1");
   }
@@ -82,7 +82,7 @@ class Packer {
     return zonepack("build --db map.db --zones zones.geojson --out map " + more);
   }
 
-  // What --json says of a build that must succeed.
+  // The JSON of a build that must succeed.
   nlohmann::json build_summary(const std::string& more = "") const {
     const Outcome outcome = build("--json summary.json " + more);
     if (outcome.exit_code != 0) throw std::runtime_error(outcome.output);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a map takes from the heap, against what accounting.hpp charges for it.
+// Compares what a map takes from the heap with what accounting.hpp charges for it.
 #include <gtest/gtest.h>
 
 #include "packer/build/manifest_writer.hpp"
@@ -114,7 +114,7 @@ TEST_P(MapMemory, IsNeverMoreThanWhatIsCharged) {
   const ByteCount charged = charged_with(catalog->fixed_bytes, pool.slot_count()) -
                             pool.slot_count() * kSlotBytes - for_loads;
   EXPECT_LE(taken, charged);
-  // And the charge is no idle fear: at least a third of it is there.
+  // And the charge is not far too high: at least a third of it is really used.
   EXPECT_GE(taken * 3, charged);
   std::printf("%u zones, names of %zu bytes: %zu bytes taken of %llu charged, %.0f a zone\n",
               GetParam().rooms, GetParam().name_bytes, taken,

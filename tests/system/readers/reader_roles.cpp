@@ -69,7 +69,7 @@ void run_reader(Role role, std::uint32_t seed, SharedReader& reader, const ZoneI
       case ReadStatus::kOk:
         ++counts.ok;
         counts.torn_accepted += !run.whole;
-        // Loaded anew before the check, and yet said to be good: as bad as torn.
+        // Reloaded before the check and still reported good: as bad as torn.
         counts.torn_accepted += run.outlived;
         break;
       case ReadStatus::kExpired:

@@ -14,18 +14,18 @@ inline constexpr std::uint32_t kZones = 24;
 
 enum class Role : std::uint8_t {
   kOrdinary,
-  kHangs,      // stops in the middle of a read until the zone was loaded anew, then reads on
+  kHangs,      // stops in the middle of a read until the zone has been reloaded, then reads on
   kOverstays,  // reads the same zone again and again long after it was unloaded
   kKilled      // is killed while it reads
 };
 const char* to_string(Role role);
 
-// What writer and readers tell each other, in memory of their own that all may write.
+// What writer and readers exchange, in separate memory that all may write.
 struct ReaderCounts {
   std::atomic<std::uint64_t> ok, expired, absent, damaged;
-  std::atomic<std::uint64_t> torn_refused;   // mixed values, and read() said so
-  std::atomic<std::uint64_t> torn_accepted;  // mixed values, and read() said they were good
-  std::atomic<std::uint64_t> outlived;       // reads during which the zone was loaded anew
+  std::atomic<std::uint64_t> torn_refused;   // mixed values, and read() reported it
+  std::atomic<std::uint64_t> torn_accepted;  // mixed values, and read() reported them as good
+  std::atomic<std::uint64_t> outlived;       // reads during which the zone was reloaded
 };
 struct Blackboard {
   std::atomic<bool> done;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // usage: readers_proof EVICTIONS: eight processes read zones in place, three of them badly, while
 // zones are evicted and loaded EVICTIONS times under a budget. Prints a table; exits with 1 when a
-// mixed read was taken for good, the budget was exceeded, or a reader crashed.
+// mixed read was accepted, the budget was exceeded, or a reader crashed.
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -100,7 +100,7 @@ class Readers {
     for (std::size_t i = 0; i < kRoles.size(); ++i) start(i);
   }
 
-  // Kills the one that is to be killed, and starts another in its place.
+  // Kills the reader whose role is to be killed, and starts another in its place.
   void kill_one() {
     const std::size_t last = kRoles.size() - 1;
     const auto reads = [&] { return board_.readers[last].ok + board_.readers[last].expired; };
@@ -112,7 +112,7 @@ class Readers {
     start(last);
   }
 
-  // True when all ended by themselves.
+  // True when all of them exited by themselves.
   bool join() {
     bool good = true;
     for (const pid_t pid : pids_) {

@@ -9,8 +9,8 @@
 
 namespace zonepack::test_support {
 
-// Contents that zones are filled with in turn, all different: whoever mixes two of them reads what
-// neither holds.
+// Contents that zones are filled with in turn, all different: a read that mixes two of them gives
+// what neither holds.
 class ZoneImages {
  public:
   explicit ZoneImages(std::uint32_t count);
@@ -20,7 +20,7 @@ class ZoneImages {
   std::uint32_t slots(std::uint32_t image) const { return slots_[image]; }
   std::uint32_t signatures(std::uint32_t image) const { return packs_[image].view().size(); }
 
-  // What these signatures are one whole image of: every value read has a part in it. size(): none.
+  // The image that these signatures are, judged by every value read; size() when they are none.
   std::uint32_t recognise(const ZoneSignatures& signatures) const;
 
  private:

@@ -69,7 +69,7 @@ json real_or_null(sqlite3_stmt* row, int column) {
   return number(sqlite3_column_double(row, column));
 }
 
-// A zlib stream with rows, columns and type as three int32 behind it.
+// A zlib stream followed by rows, columns and type as three int32.
 json unzipped(const std::string& stored) {
   if (stored.empty()) return {};
   const auto shape = values<std::int32_t>(stored.substr(stored.size() - 12));

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-// What `zonepack export` must print for an RTAB-Map database of schema 0.18 or later, told by
+// What `zonepack export` must print for an RTAB-Map database of schema 0.18 or later, read by
 // SQLite and zlib alone: nothing of the packer is used here, so that a mistake of its reader shows.
 namespace zonepack::round_trip {
 

@@ -148,7 +148,7 @@ TEST_F(AtomicFileTest, FollowsTheUmask) {
   EXPECT_EQ(status.st_mode & 0777, 0640u);
 }
 
-TEST(PartName, IsToldFromOtherNames) {
+TEST(PartName, IsDistinguishedFromOtherNames) {
   EXPECT_TRUE(is_part_name("manifest.zpm.part-123-0"));
   for (const char* name : {"manifest.zpm", "L1.part", "L1.part-", "L1.part-12", "L1.part-12-",
                            "L1.part-x-1", "L1.part-1-2.zpk", ".part-1-2"}) {

@@ -83,7 +83,7 @@ TEST_F(Board, ReadsWhatTheKernelLetsBeSet) {
   EXPECT_FALSE(fact("memory limit of the cgroup").good);
 }
 
-TEST_F(Board, FindsNothingWrongWithWhatIsNotTold) {
+TEST_F(Board, FindsNothingWrongWithWhatIsUnknown) {
   for (const char* name : {"frequency governor", "idle states", "real-time throttling",
                            "compaction of locked pages", "memory limit of the cgroup"}) {
     EXPECT_TRUE(fact(name).good) << name;

@@ -96,7 +96,7 @@ TEST(CanLogLine, ReadsTheScreenFormat) {
   EXPECT_EQ(frame_of("(1.0)  can0  123   [0]").len, 0);
 }
 
-TEST(CanLogLine, TellsAbsoluteStampsFromRelativeOnes) {
+TEST(CanLogLine, DistinguishesAbsoluteStampsFromRelativeOnes) {
   EXPECT_FALSE(parse_can_log_line(" (000.000200)  can0  311   [1]  00").absolute_stamp);
   EXPECT_FALSE(parse_can_log_line(" (12345.000200)  can0  311   [1]  00").absolute_stamp);
   // date -u -d @1718021600 = 2024-06-10 12:13:20

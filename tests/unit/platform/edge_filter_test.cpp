@@ -9,7 +9,7 @@ namespace {
 TEST(EdgeFilter, WithoutADebounceTimeEveryChangeIsAnEdgeAtOnce) {
   EdgeFilter filter(0);
   for (std::int64_t t = 1; t <= 6; ++t) {
-    const auto edge = filter.change({t, t % 2 == 1});
+    const auto edge = filter.change({.stamp_ns = t, .active = t % 2 == 1});
     ASSERT_TRUE(edge);
     EXPECT_EQ(edge->stamp_ns, t);
     EXPECT_EQ(edge->active, t % 2 == 1);
@@ -19,9 +19,9 @@ TEST(EdgeFilter, WithoutADebounceTimeEveryChangeIsAnEdgeAtOnce) {
 
 TEST(EdgeFilter, ALevelCountsOnceItHasLastedFromItsOwnEdge) {
   EdgeFilter filter(100);
-  EXPECT_FALSE(filter.change({1000, true}));
-  EXPECT_FALSE(filter.change({1050, false}));  // lasted 50
-  EXPECT_FALSE(filter.change({1060, true}));
+  EXPECT_FALSE(filter.change({.stamp_ns = 1000, .active = true}));
+  EXPECT_FALSE(filter.change({.stamp_ns = 1050, .active = false}));  // lasted 50
+  EXPECT_FALSE(filter.change({.stamp_ns = 1060, .active = true}));
   EXPECT_FALSE(filter.settle(1159));
   const auto edge = filter.settle(1160);
   ASSERT_TRUE(edge);
@@ -30,42 +30,42 @@ TEST(EdgeFilter, ALevelCountsOnceItHasLastedFromItsOwnEdge) {
   EXPECT_FALSE(filter.settle(9999));
 }
 
-TEST(EdgeFilter, ALevelThatLastedIsToldWhenTheNextChangeIsReadHoweverLate) {
+TEST(EdgeFilter, ALevelThatLastedIsReportedWithTheNextChangeHoweverLate) {
   EdgeFilter filter(100);
-  EXPECT_FALSE(filter.change({1000, true}));
-  const auto on = filter.change({1100, false});
+  EXPECT_FALSE(filter.change({.stamp_ns = 1000, .active = true}));
+  const auto on = filter.change({.stamp_ns = 1100, .active = false});
   ASSERT_TRUE(on);
   EXPECT_EQ(on->stamp_ns, 1000);
-  const auto off = filter.change({1200, true});
+  const auto off = filter.change({.stamp_ns = 1200, .active = true});
   ASSERT_TRUE(off);
   EXPECT_FALSE(off->active);
   EXPECT_EQ(off->stamp_ns, 1100);
 }
 
-TEST(EdgeFilter, ReturningToTheOldLevelIsNoEdgeAndBeginsAnew) {
+TEST(EdgeFilter, ReturningToTheOldLevelIsNoEdgeAndStartsOver) {
   EdgeFilter filter(100);
-  EXPECT_FALSE(filter.change({1000, true}));
-  EXPECT_FALSE(filter.change({1099, false}));
+  EXPECT_FALSE(filter.change({.stamp_ns = 1000, .active = true}));
+  EXPECT_FALSE(filter.change({.stamp_ns = 1099, .active = false}));
   EXPECT_FALSE(filter.settle(5000));
-  EXPECT_FALSE(filter.change({5000, true}));
+  EXPECT_FALSE(filter.change({.stamp_ns = 5000, .active = true}));
   EXPECT_FALSE(filter.settle(5099));
   EXPECT_TRUE(filter.settle(5100));
 }
 
-TEST(EdgeFilter, AStampThatFallsCountsAsTheOneBefore) {
+TEST(EdgeFilter, AnEarlierStampCountsAsTheOneBefore) {
   EdgeFilter filter(100);
-  EXPECT_FALSE(filter.change({1000, true}));
-  EXPECT_FALSE(filter.change({10, false}));
-  EXPECT_FALSE(filter.change({10, true}));
+  EXPECT_FALSE(filter.change({.stamp_ns = 1000, .active = true}));
+  EXPECT_FALSE(filter.change({.stamp_ns = 10, .active = false}));
+  EXPECT_FALSE(filter.change({.stamp_ns = 10, .active = true}));
   const auto edge = filter.settle(1100);
   ASSERT_TRUE(edge);
   EXPECT_EQ(edge->stamp_ns, 1000);
 }
 
-TEST(EdgeFilter, TheSameLevelToldTwiceChangesNothing) {
+TEST(EdgeFilter, TheSameLevelTwiceChangesNothing) {
   EdgeFilter filter(100);
-  EXPECT_FALSE(filter.change({1000, true}));
-  EXPECT_FALSE(filter.change({1090, true}));
+  EXPECT_FALSE(filter.change({.stamp_ns = 1000, .active = true}));
+  EXPECT_FALSE(filter.change({.stamp_ns = 1090, .active = true}));
   EXPECT_TRUE(filter.settle(1100));
   EXPECT_TRUE(filter.level());
 }

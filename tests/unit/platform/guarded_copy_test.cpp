@@ -71,7 +71,7 @@ TEST(GuardedCopy, ServesThreadsAtTheSameTime) {
   EXPECT_EQ(right, (std::array<int, 4>{200, 200, 200, 200}));
 }
 
-// What a fault outside of a copy does; in processes of their own, because handlers stay.
+// What a fault outside a copy does; in separate processes, because handlers stay installed.
 class GuardedCopyDeathTest : public testing::Test {
  protected:
   GuardedCopyDeathTest() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
@@ -85,7 +85,7 @@ class GuardedCopyDeathTest : public testing::Test {
     if (guarded_copy(&out, mapping.bytes(), 1)) _exit(1);
     const volatile std::byte* const gone = mapping.bytes();
     out = *gone;
-    _exit(2);  // it must not come to this
+    _exit(2);  // must not be reached
   }
 };
 

@@ -100,7 +100,7 @@ TEST_F(LocalSockets, ListenReplacesOnlyASocketThatNobodyListensOn) {
     ASSERT_TRUE(first.ok());
     EXPECT_EQ(LocalListener::listen(path, 0600).error().code, ErrorCode::kExists);
     EXPECT_TRUE(LocalSocket::connect(path).ok()) << "the first still listens";
-    // Killed: the name stays, nobody listens.
+    // Killed: the name stays, but no process listens.
     const LocalListener left = std::move(*first);
     ASSERT_EQ(::link(path.c_str(), (path + "2").c_str()), 0);
   }
@@ -123,7 +123,7 @@ TEST_F(LocalSockets, ListenTouchesNoOtherFile) {
   EXPECT_EQ(text, "data");
 }
 
-TEST_F(LocalSockets, APollerTellsWhoIsReadyAndWhoIsGone) {
+TEST_F(LocalSockets, APollerReportsWhichSocketIsReadyAndWhichIsGone) {
   const auto listener = LocalListener::listen(path, 0600);
   auto poller = Poller::create();
   ASSERT_TRUE(poller.ok());

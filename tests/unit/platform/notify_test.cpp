@@ -55,7 +55,7 @@ class Manager {
   Descriptor socket_;
 };
 
-TEST(Notify, TellsTheManagerHowTheServiceStands) {
+TEST(Notify, ReportsTheStateOfTheServiceToTheManager) {
   const test_support::TemporaryFolder folder;
   Manager manager(folder / "notify");
   const auto notifier = Notifier::from_environment();

@@ -25,7 +25,7 @@ SharedMemory make() {
   return std::move(*memory);
 }
 
-// What a child process that runs `body` exits with.
+// The exit code of a child process that runs `body`.
 int in_child(const std::function<int()>& body) {
   const pid_t child = fork();
   if (child == 0) _exit(body());
@@ -59,7 +59,7 @@ TEST(SharedMemory, CannotBeMappedWritableByAReader) {
   EXPECT_LT(write(file->get(), "x", 1), 0);
 }
 
-TEST(SharedMemory, CannotBeOpenedAnewToWriteByAnotherUser) {
+TEST(SharedMemory, CannotBeReopenedForWritingByAnotherUser) {
   if (getuid() != 0) GTEST_SKIP() << "changing the user takes root";
   const SharedMemory memory = make();
   const auto file = memory.reader_file();
@@ -80,7 +80,7 @@ TEST(SharedMemory, NeverChangesItsSize) {
   EXPECT_NE(ftruncate(memory.file().get(), 2 * kSharedBytes), 0);
 }
 
-// Apart from the thread sanitizer, which would write to pages of its own beside.
+// Not under the thread sanitizer, which would also write to pages of its own.
 __attribute__((no_sanitize("thread"))) void touch_pages(std::byte* begin, std::size_t size) {
   for (std::size_t at = 0; at < size; at += 4096) begin[at] = std::byte{1};
 }

@@ -80,7 +80,7 @@ TEST(HardwareStamps, FollowAClockThatDrifts) {
   EXPECT_LE(worst, kMs / 5 + kMs / 100);
 }
 
-TEST(HardwareStamps, StartAnewWhenTheControllersClockWasSet) {
+TEST(HardwareStamps, StartOverWhenTheControllersClockWasSet) {
   HardwareStamps hardware;
   hardware.monotonic_of(5000 * kMs, 100 * kMs);
   EXPECT_EQ(hardware.monotonic_of(0, 110 * kMs), 110 * kMs);

@@ -117,7 +117,7 @@ TEST_P(Storage, LeavesLittleInThePageCacheAtAnyTime) {
     }
   }
   if (GetParam() == ReadMode::kCached) {
-    EXPECT_EQ(cached_bytes(file.path()), kBytes);  // what the others are measured against
+    EXPECT_EQ(cached_bytes(file.path()), kBytes);  // the baseline for the others
   } else {
     EXPECT_LE(most, StorageFile::kMostPageCache);
     EXPECT_EQ(cached_bytes(file.path()), 0u);
@@ -132,7 +132,7 @@ TEST_P(Storage, ClosedInTheMidstOfReadingAheadItLeavesNothing) {
     open(file).read_ahead(at, StorageFile::kMostAhead);
     EXPECT_EQ(cached_bytes(file.path()), 0u);
   }
-  std::uint64_t soon = 0;  // what was still on its way would be there now
+  std::uint64_t soon = 0;  // bytes that were still being fetched would be there now
   for (int look = 0; look < 20; ++look) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     soon = std::max(soon, cached_bytes(file.path()));
@@ -149,7 +149,7 @@ TEST_P(Storage, OpensRegularFilesOnly) {
   EXPECT_EQ(why(folder.path().string()).code, ErrorCode::kIo);
   const std::string pipe = (folder / "pipe").string();
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_EQ(why(pipe).code, ErrorCode::kIo);  // and does not wait for a writer
+  EXPECT_EQ(why(pipe).code, ErrorCode::kIo);  // without waiting for a writer
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, Storage,
@@ -181,7 +181,7 @@ TEST(StorageFile, ReadsPastTheCacheByAQueueOneFileAtATime) {
 }
 
 TEST(StorageFile, ReadsThroughTheCacheWhereDirectReadsAreRefused) {
-  // The kernel's own files know no direct reads.
+  // The kernel's own files do not support direct reads.
   const std::string path = "/sys/kernel/notes";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
   const auto queue = ReadQueue::make();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map written once by version 1.0 of the format and never again: later versions must read it.
+// A map written once in version 1.0 of the format: later versions must read it.
 #include <gtest/gtest.h>
 #include <lz4.h>
 
@@ -56,19 +56,19 @@ std::string read_text(const std::filesystem::path& path) {
 }
 
 TEST_F(GoldenMap, IsWhole) {
-  const Verdict verdict = verify_map(FolderSource(kGolden / "map"));
+  const Verdict verdict = verify_map(FolderFiles(kGolden / "map"));
   for (const Problem& problem : verdict.problems) ADD_FAILURE() << to_string(problem);
   EXPECT_EQ(verdict.packs, 3u);
   EXPECT_EQ(verdict.signatures, 8u);
 }
 
-TEST_F(GoldenMap, ManifestHoldsWhatStandsBesideIt) {
+TEST_F(GoldenMap, ManifestHoldsWhatItsJsonFileSays) {
   EXPECT_EQ(first_difference(test_support::to_json(*manifest_).dump(1) + "\n",
                              read_text(kGolden / "manifest.json")),
             "");
 }
 
-TEST_F(GoldenMap, PacksHoldWhatStandsBesideThem) {
+TEST_F(GoldenMap, PacksHoldWhatTheirJsonFilesSay) {
   for (const fb::Zone* zone : *manifest_->zones()) {
     const PackReader reader = pack_of(*zone);
     const auto pack = DecodedPack::decode(reader, kEveryPayload);

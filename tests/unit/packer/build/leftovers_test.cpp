@@ -72,19 +72,19 @@ TEST_F(Leftovers, AreNeverFilesThatABuildDoesNotWrite) {
   EXPECT_THAT(names(), ElementsAre());
 }
 
-TEST_F(Leftovers, AreNotToldWithoutAManifest) {
+TEST_F(Leftovers, AreNotListedWithoutAManifest) {
   std::filesystem::remove(folder_ / std::string(kManifestName));
   EXPECT_THAT(refusal(), HasSubstr("every pack would be removed"));
 }
 
-TEST_F(Leftovers, AreNotToldWithADamagedManifest) {
+TEST_F(Leftovers, AreNotListedWithADamagedManifest) {
   Bytes manifest = map_.folder.files[std::string(kManifestName)];
   manifest[100] ^= std::byte{1};
   write_bytes(folder_ / std::string(kManifestName), manifest);
   EXPECT_THAT(refusal(), HasSubstr("bad checksum"));
 }
 
-TEST_F(Leftovers, AreNotToldWhileABuildRuns) {
+TEST_F(Leftovers, AreNotListedWhileABuildRuns) {
   write_bytes(folder_ / ("pack.zpk.part-" + std::to_string(getpid()) + "-0"), Bytes(1));
   EXPECT_THAT(refusal(), HasSubstr("which still runs"));
 }

@@ -60,7 +60,7 @@ class Rebuild : public testing::Test {
     std::ostringstream silent;
     Progress progress(silent, false);
     build_map(options_, progress);
-    EXPECT_TRUE(verify_map(FolderSource(options_.out)).whole());
+    EXPECT_TRUE(verify_map(FolderFiles(options_.out)).whole());
   }
 
   // Packs of a zone that the manifest named before the rebuild, byte for byte as they were.
@@ -74,7 +74,7 @@ class Rebuild : public testing::Test {
   }
   std::size_t packs_of(const std::string& zone) {
     std::size_t count = 0;
-    for (const std::string& name : FolderSource(options_.out).names()) {
+    for (const std::string& name : FolderFiles(options_.out).names()) {
       count += name.starts_with(zone + "-");
     }
     return count;
@@ -104,7 +104,7 @@ TEST_F(Rebuild, AfterAFeatureOfOneRoomChangedLeavesTheOtherPacksAsTheyWere) {
   expect_only_right_changed();
 }
 
-TEST_F(Rebuild, AfterARoomWasMappedAnewLeavesTheOtherPacksAsTheyWere) {
+TEST_F(Rebuild, AfterARoomWasMappedAgainLeavesTheOtherPacksAsTheyWere) {
   // Session 2 comes back with other ids, poses, and one signature more.
   fixture_.signatures.resize(12);
   for (std::int32_t i = 31; i <= 35; ++i) {

@@ -60,7 +60,7 @@ TEST(Lattice, GivesCellsBackBitForBit) {
   }
 }
 
-// Two cells that round to one coordinate cannot be told apart; what comes back is still exact.
+// Two cells that round to one coordinate cannot be distinguished; the result is still exact.
 TEST(Lattice, IsExactOrNothingWhereCellsAreFinerThanFloats) {
   int refused = 0;
   for (unsigned seed = 0; seed < 20; ++seed) {

@@ -44,7 +44,7 @@ TEST(JsonLines, PrintsFloatsAsTheDoubleThatSqliteHolds) {
     ASSERT_EQ(std::bit_cast<std::uint64_t>(back),
               std::bit_cast<std::uint64_t>(static_cast<double>(value)));
   }
-  // 0.1f is 0.100000001490116119384765625; 17 digits tell its double from all others.
+  // 0.1f is 0.100000001490116119384765625; 17 digits distinguish its double from all others.
   EXPECT_EQ(number_text(0.1f), "0.10000000149011612");
 }
 

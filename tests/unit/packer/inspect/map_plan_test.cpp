@@ -35,12 +35,15 @@ class RowOfRooms {
       PackSummary& pack = packs.emplace_back();
       pack.file = zone.name + ".zpk";
       pack.signatures = 10u * static_cast<std::uint32_t>(i + 1);
-      pack.payloads[0] = {2000, 1000, 1};
-      pack.payloads[1] = {60000, 500u * slots[i], slots[i]};
+      pack.payloads[0] = {.decoded = 2000, .stored = 1000, .chunks = 1};
+      pack.payloads[1] = {.decoded = 60000, .stored = 500u * slots[i], .chunks = slots[i]};
       pack.slots = {1, slots[i]};
       if (i > 0) {
         const auto zone_a = static_cast<std::uint32_t>(i - 1);
-        plan.portals.push_back({"p" + zone.name, zone_a, zone_a + 1, {{x, 0.2}, {x, 0.8}}});
+        plan.portals.push_back({.name = "p" + zone.name,
+                                .zone_a = zone_a,
+                                .zone_b = zone_a + 1,
+                                .segment = {{x, 0.2}, {x, 0.8}}});
       }
     }
     ManifestContent content;
@@ -84,7 +87,7 @@ TEST(MapPlan, TakesTheLargestPairOfNeighbours) {
   EXPECT_EQ(plan.live_change_bytes, plan.smallest.bytes + plan.fixed_bytes + 5 * kSlot);
 }
 
-TEST(MapPlan, HoldsPinnedZonesBesideEveryPair) {
+TEST(MapPlan, HoldsPinnedZonesBesidesEveryPair) {
   const RowOfRooms map;
   const ZoneId pinned[] = {kB};
   const MapPlan plan = plan_map(map.manifest(), kFeaturesOnly, pinned, std::nullopt);

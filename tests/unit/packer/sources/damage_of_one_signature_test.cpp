@@ -44,7 +44,7 @@ Bytes text_bytes(std::string_view text) {
   return {bytes.begin(), bytes.end()};
 }
 
-// A matrix blob whose trailer says something else than its stream holds.
+// A matrix blob whose trailer does not match its stream.
 Bytes lying(std::int32_t rows, std::int32_t cols, std::int32_t type) {
   Bytes blob = cut(zip(float_matrix(1, 4, 2, std::vector<float>(8, 1.0f))), 12);
   const Bytes trailer = bytes_of(std::vector<std::int32_t>{rows, cols, type});

@@ -25,7 +25,7 @@ TEST(Damage, OfPayloadsThatAreNotWantedIsNotMet) {
   write_rtabmap_database(path, three_signatures());
   execute(path, "UPDATE Data SET image=?1, depth=?1, scan=?1 WHERE id=2", Bytes(30, std::byte{1}));
   RtabmapDatabase database(path);
-  const PayloadSet wanted{true, false, true, false, false, true};
+  const PayloadSet wanted{.scan = false, .image = false, .depth = false};
   EXPECT_EQ(database.read(2, wanted).features.count, 20u);
 }
 
@@ -132,7 +132,7 @@ TEST(Damage, OfOnePageOfTheFileSparesTheSignaturesElsewhere) {
     EXPECT_EQ(error.damage().column, "database file");
     EXPECT_THAT(error.what(), HasSubstr(".recover"));
   }
-  EXPECT_EQ(database.read(3, {false, true, true, true, true, true}).links.size(), 1u);
+  EXPECT_EQ(database.read(3, {.features = false}).links.size(), 1u);
 }
 
 // RTAB-Map itself reads these columns into float32, whatever wrote them.

@@ -10,7 +10,7 @@
 #include "tests/support/rtabmap_fixture.hpp"
 #include "tests/support/signature_recipe.hpp"
 
-// What tests of damage damage, and with what.
+// The signatures that tests damage, and the damage.
 namespace zonepack::packer {
 
 inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is no closed RTAB-Map database is refused with a reason; the file itself never changes.
+// Anything but a closed RTAB-Map database is refused with a reason; the file itself never changes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -94,7 +94,7 @@ TEST_F(OpeningADatabase, RefusesALiveWriteAheadLog) {
   EXPECT_EQ(database.read(1, PayloadSet()).weight, 2);
 }
 
-TEST_F(OpeningADatabase, LooksForTheLogBesideTheFileAndNotBesideALinkToIt) {
+TEST_F(OpeningADatabase, LooksForTheLogNextToTheFileAndNotNextToALinkToIt) {
   write_rtabmap_database(path_, one_of_everything("0.23.8"));
   const fs::path link = folder_ / "link.db";
   fs::create_symlink(path_, link);

@@ -14,7 +14,7 @@ namespace {
 using test_support::rvl;
 
 const std::string kFile = "map.db";
-const Place kPlace{&kFile, 7, "Data.depth"};
+const CellPlace kPlace{.file = &kFile, .signature = 7, .column = "Data.depth"};
 
 bool depth_passes(const Bytes& bytes) {
   try {

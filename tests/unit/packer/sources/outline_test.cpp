@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The outline says what a database holds and what it lacks, without judging it.
+// The outline reports what a database holds and what it lacks, without judging it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever bytes a database file holds, reading it ends in data or in a message. Worth most under
+// Whatever bytes a database file holds, reading it ends in data or in a message. Most useful under
 // the sanitizers (presets asan and tsan).
 #include <gtest/gtest.h>
 
@@ -124,7 +124,7 @@ TEST_F(AnyBytes, InAnyBlobAreReadOrReported) {
     Bytes noise(random() % 200);
     for (std::byte& byte : noise) byte = static_cast<std::byte>(random());
     if (round % 2 == 0 && noise.size() > 16) {
-      // Something that starts like what belongs there.
+      // Bytes that start like valid content.
       static const Bytes kRvl = test_support::rvl(4, 4, std::vector<std::uint16_t>(16, 900));
       static const Bytes kPng = test_support::png(2, 2, 8, 0, Bytes(4, std::byte{1}));
       const Bytes& like = round % 4 == 0 ? kRvl : kPng;

@@ -231,7 +231,14 @@ TEST(SampleDatabase, PayloadsThatAreNotWantedAreAbsent) {
   RtabmapDatabase database(kSample);
   SignatureRecord record = database.read(1, PayloadSet());
   ASSERT_GT(record.features.count, 0u);
-  database.read(2, PayloadSet{false, false, false, false, false, false}, record);
+  database.read(2,
+                PayloadSet{.features = false,
+                           .scan = false,
+                           .grid = false,
+                           .image = false,
+                           .depth = false,
+                           .userdata = false},
+                record);
   EXPECT_EQ(record.features.count, 0u);
   EXPECT_FALSE(record.scan.has_value());
   EXPECT_FALSE(record.grid.has_value());

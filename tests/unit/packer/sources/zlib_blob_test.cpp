@@ -17,7 +17,7 @@ using test_support::float_matrix;
 using test_support::zip;
 
 const std::string kZlibFile = "map.db";
-const Place kZlibPlace{&kZlibFile, 7, "Data.scan"};
+const CellPlace kZlibPlace{.file = &kZlibFile, .signature = 7, .column = "Data.scan"};
 
 Bytes with_trailer(Bytes stream, std::int32_t rows, std::int32_t cols, std::int32_t type) {
   const Bytes trailer = bytes_of(std::vector<std::int32_t>{rows, cols, type});

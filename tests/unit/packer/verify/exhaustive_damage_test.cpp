@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every single damage that a small map can take, none left out.
+// Every possible single damage of a small map.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -134,7 +134,7 @@ TEST_F(ExhaustiveDamage, EveryByteAppendedIsFound) {
   }
 }
 
-// Stored bytes of two chunks change places; where they differ in length, what lies between moves.
+// Swaps the stored bytes of two chunks; where they differ in length, the bytes between move.
 Bytes with_swapped(const Bytes& pack, std::size_t a, std::size_t a_size, std::size_t b,
                    std::size_t b_size) {
   const auto at = [&](std::size_t i) { return pack.begin() + static_cast<std::ptrdiff_t>(i); };

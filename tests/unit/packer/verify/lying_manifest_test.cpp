@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Manifests with a right digest that say what the packs do not hold.
+// Manifests with a correct digest whose claims the packs contradict.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ std::string listed(const Problems& problems) {
 
 struct Lie {
   const char* name;
-  std::function<void(SmallMap&)> tell;
+  std::function<void(SmallMap&)> falsify;
   const char* found;  // part of the message
 };
 
@@ -33,7 +33,7 @@ class LyingManifest : public testing::TestWithParam<Lie> {};
 
 TEST_P(LyingManifest, IsFound) {
   SmallMap map;
-  GetParam().tell(map);
+  GetParam().falsify(map);
   map.write_manifest();
   const Verdict verdict = verify_map(map.folder);
   EXPECT_THAT(listed(verdict.problems), testing::HasSubstr(GetParam().found));
@@ -152,9 +152,9 @@ INSTANTIATE_TEST_SUITE_P(
             "fewer than its features alone take"}),
     [](const auto& test) { return test.param.name; });
 
-// What the manifest says and a pack or another part of the manifest can contradict. Left out: what
-// stands in the manifest only (lineage, labels, types, which portals there are, texts of the
-// provenance) and coordinates, which are held against signatures and borders with some play.
+// Every claim of the manifest that a pack or another part of the manifest can contradict. Left out:
+// what is in the manifest only (lineage, labels, types, which portals there are, texts of the
+// provenance) and coordinates, which are compared with signatures and borders with some tolerance.
 std::string claims(const fb::Manifest& manifest) {
   std::ostringstream out;
   out << manifest.frame()->str() << manifest.slot_bytes() << ' ' << manifest.payload_mask();
@@ -210,7 +210,7 @@ TEST(LyingManifests, ThatAreMissingLeaveThePacksToBeCheckedByThemselves) {
   EXPECT_EQ(verdict.problems[1].place.file, map.packs[1].file);
 }
 
-TEST(LyingManifests, DoNotMakeFilesBesideTheMapAProblem) {
+TEST(LyingManifests, DoNotMakeOtherFilesInTheFolderAProblem) {
   SmallMap map;
   map.folder.files["c-0123456789abcdef.zpk"] = Bytes(10);
   map.folder.files["pack.zpk.part-77-0"] = Bytes(10);

@@ -115,7 +115,7 @@ TEST(Partition, RefusesAPositionThatIsNotANumber) {
       std::runtime_error);
 }
 
-TEST(Partition, TellsFloorsApartByHeight) {
+TEST(Partition, SeparatesFloorsByHeight) {
   PlannedZone ground = room("G", 0, 0, 4, 3), first = room("U", 0, 0, 4, 3);
   ground.z_max_m = 3;
   first.z_min_m = 3;

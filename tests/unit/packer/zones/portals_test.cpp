@@ -25,9 +25,12 @@ TEST(Portals, ReadsPortalsByNameByIdOrWithoutEither) {
   const ZoneFile file = parse({kRight, kLeft, kDoor, by_id, nameless});
   EXPECT_THAT(messages(file.findings.faults), IsEmpty());
   EXPECT_FALSE(file.plan.portals_found);
-  EXPECT_THAT(file.plan.portals, ElementsAre(PlannedPortal{"B-A", 1, 0, {{4, 2.5}, {4, 3}}},
-                                             PlannedPortal{"D7", 0, 1, {{4, 0}, {4, 0.5}}},
-                                             PlannedPortal{"P1", 0, 1, {{4, 1}, {4, 2}}}));
+  EXPECT_THAT(
+      file.plan.portals,
+      ElementsAre(
+          PlannedPortal{.name = "B-A", .zone_a = 1, .zone_b = 0, .segment = {{4, 2.5}, {4, 3}}},
+          PlannedPortal{.name = "D7", .zone_a = 0, .zone_b = 1, .segment = {{4, 0}, {4, 0.5}}},
+          PlannedPortal{.name = "P1", .zone_a = 0, .zone_b = 1, .segment = {{4, 1}, {4, 2}}}));
 }
 
 TEST(Portals, MovesPortalEndsOntoTheSharedBorder) {
@@ -59,9 +62,12 @@ TEST(Portals, FindsPortalsAtSharedBordersWhenNoneAreDrawn) {
       parse({kLeft, kRight, box("C", 0, 3, 8, 5), box("D", 8, 5, 9, 6), box("E", -1, 2.8, 0, 3)});
   EXPECT_THAT(messages(file.findings.faults), IsEmpty());
   EXPECT_TRUE(file.plan.portals_found);
-  EXPECT_THAT(file.plan.portals, ElementsAre(PlannedPortal{"A-B", 0, 1, {{4, 0}, {4, 3}}},
-                                             PlannedPortal{"A-C", 0, 2, {{4, 3}, {0, 3}}},
-                                             PlannedPortal{"B-C", 1, 2, {{8, 3}, {4, 3}}}));
+  EXPECT_THAT(
+      file.plan.portals,
+      ElementsAre(
+          PlannedPortal{.name = "A-B", .zone_a = 0, .zone_b = 1, .segment = {{4, 0}, {4, 3}}},
+          PlannedPortal{.name = "A-C", .zone_a = 0, .zone_b = 2, .segment = {{4, 3}, {0, 3}}},
+          PlannedPortal{.name = "B-C", .zone_a = 1, .zone_b = 2, .segment = {{8, 3}, {4, 3}}}));
   EXPECT_THAT(messages(file.findings.warnings),
               ElementsAre(AllOf(HasSubstr("'D'"), HasSubstr("unreachable")),
                           AllOf(HasSubstr("'E'"), HasSubstr("unreachable"))));
@@ -71,8 +77,11 @@ TEST(Portals, FindsOnePortalForEachSeparatePieceOfBorder) {
   // A has a notch at y 1...2, where it keeps 1 m away from B.
   const ZoneFile file =
       parse({zone("A", "[[0,0],[4,0],[4,1],[3,1],[3,2],[4,2],[4,3],[0,3],[0,0]]"), kRight});
-  EXPECT_THAT(file.plan.portals, ElementsAre(PlannedPortal{"A-B", 0, 1, {{4, 0}, {4, 1}}},
-                                             PlannedPortal{"A-B.2", 0, 1, {{4, 2}, {4, 3}}}));
+  EXPECT_THAT(
+      file.plan.portals,
+      ElementsAre(
+          PlannedPortal{.name = "A-B", .zone_a = 0, .zone_b = 1, .segment = {{4, 0}, {4, 1}}},
+          PlannedPortal{.name = "A-B.2", .zone_a = 0, .zone_b = 1, .segment = {{4, 2}, {4, 3}}}));
 }
 
 TEST(Portals, RefusesThirteenOfTheHospitalsPortalsWithoutSnap) {

@@ -52,8 +52,8 @@ std::vector<std::string> names(const ZonePlan& plan) {
   return result;
 }
 
-// What must hold for every split: areas add up, parts are apart and connected by portals on their
-// borders, every signature is in one part, by the rule, and no part is too heavy.
+// What must hold for every split: areas add up, parts are disjoint and connected by portals on
+// their borders, every signature is in one part, by the rule, and no part is too heavy.
 void expect_sound(const Case& input, const SplitPlan& result, ByteCount limit) {
   ASSERT_EQ(result.zone_of.size(), input.places.size());
   double area_before = 0, area_after = 0;
@@ -155,10 +155,13 @@ TEST(Split, GivesPortalsToThePartThatTheyTouch) {
   const SplitPlan result = input.split(20);
   expect_sound(input, result, 20);
   // H is cut at x = 4, which D2 straddles.
-  EXPECT_THAT(result.plan.portals, ElementsAre(PlannedPortal{"D1", 0, 2, {{1, 2}, {2, 2}}},
-                                               PlannedPortal{"D2.1", 3, 0, {{3.5, 2}, {4, 2}}},
-                                               PlannedPortal{"D2.2", 3, 1, {{4, 2}, {7, 2}}},
-                                               PlannedPortal{"H.1-H.2", 0, 1, {{4, 0}, {4, 2}}}));
+  EXPECT_THAT(
+      result.plan.portals,
+      ElementsAre(
+          PlannedPortal{.name = "D1", .zone_a = 0, .zone_b = 2, .segment = {{1, 2}, {2, 2}}},
+          PlannedPortal{.name = "D2.1", .zone_a = 3, .zone_b = 0, .segment = {{3.5, 2}, {4, 2}}},
+          PlannedPortal{.name = "D2.2", .zone_a = 3, .zone_b = 1, .segment = {{4, 2}, {7, 2}}},
+          PlannedPortal{.name = "H.1-H.2", .zone_a = 0, .zone_b = 1, .segment = {{4, 0}, {4, 2}}}));
 }
 
 TEST(Split, SplitsAPortalBetweenTwoSplitZones) {
@@ -170,11 +173,14 @@ TEST(Split, SplitsAPortalBetweenTwoSplitZones) {
   for (const double x : {1.0, 3.0}) input.add({x, 3}, 10);  // B is cut at 2
   const SplitPlan result = input.split(10);
   expect_sound(input, result, 10);
-  EXPECT_THAT(result.plan.portals, ElementsAre(PlannedPortal{"A.1-A.2", 0, 1, {{4, 0}, {4, 2}}},
-                                               PlannedPortal{"B.1-B.2", 2, 3, {{2, 2}, {2, 4}}},
-                                               PlannedPortal{"D.1", 0, 2, {{0.5, 2}, {2, 2}}},
-                                               PlannedPortal{"D.2", 0, 3, {{2, 2}, {4, 2}}},
-                                               PlannedPortal{"D.3", 1, 3, {{4, 2}, {7.5, 2}}}));
+  EXPECT_THAT(
+      result.plan.portals,
+      ElementsAre(
+          PlannedPortal{.name = "A.1-A.2", .zone_a = 0, .zone_b = 1, .segment = {{4, 0}, {4, 2}}},
+          PlannedPortal{.name = "B.1-B.2", .zone_a = 2, .zone_b = 3, .segment = {{2, 2}, {2, 4}}},
+          PlannedPortal{.name = "D.1", .zone_a = 0, .zone_b = 2, .segment = {{0.5, 2}, {2, 2}}},
+          PlannedPortal{.name = "D.2", .zone_a = 0, .zone_b = 3, .segment = {{2, 2}, {4, 2}}},
+          PlannedPortal{.name = "D.3", .zone_a = 1, .zone_b = 3, .segment = {{4, 2}, {7.5, 2}}}));
 }
 
 TEST(Split, KeepsOrphansWithTheirNearestPart) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever a file says, reading it ends in findings and never in a crash.
+// Whatever a file contains, reading it ends in findings and never in a crash.
 #include <gtest/gtest.h>
 
 #include <random>

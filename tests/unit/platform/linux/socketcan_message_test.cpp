@@ -22,7 +22,7 @@ canfd_frame raw_frame(std::uint32_t id, std::uint8_t len, std::uint8_t flags = 0
   return raw;
 }
 
-TEST(FrameFromSocket, TellsClassicFromFdByItsSize) {
+TEST(FrameFromSocket, DistinguishesClassicFromFdByItsSize) {
   const auto classic = frame_from_socket(raw_frame(0x311, 8), CAN_MTU);
   ASSERT_TRUE(classic);
   EXPECT_FALSE(classic->fd || classic->extended || classic->rtr || classic->error);

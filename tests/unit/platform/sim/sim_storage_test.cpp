@@ -37,7 +37,7 @@ TEST(SimStorage, FailsToOpen) {
   EXPECT_EQ(StorageFile::open(file.path().string()).error(), (Error{ErrorCode::kIo, EMFILE}));
 }
 
-TEST(SimStorage, TellsWhatWasRead) {
+TEST(SimStorage, RecordsWhatWasRead) {
   const NumberedFile file(10'000);
   SimStorage disk;
   std::byte out[100];

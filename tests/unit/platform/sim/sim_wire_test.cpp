@@ -107,19 +107,25 @@ TEST(SimWire, SendsTheDataOfFdFramesAtTheirOwnRate) {
   EXPECT_EQ(wire.next()->stamp_ns, 70 * kUs + 338'500);
 }
 
-TEST(SimWire, LosesFramesUnseenOrCounted) {
+TEST(SimWire, LosesFramesUnnoticedOrCounted) {
   std::uint64_t dropped = 0;
-  EXPECT_EQ(heard({SimFault::Kind::kDrop, 3 * kWireMs, 0, 2}, &dropped).size(), 8u);
+  EXPECT_EQ(
+      heard({.kind = SimFault::Kind::kDrop, .at_ns = 3 * kWireMs, .count = 2}, &dropped).size(),
+      8u);
   EXPECT_EQ(dropped, 0u);
-  EXPECT_EQ(heard({SimFault::Kind::kDrop, 3 * kWireMs, 5 * kWireMs, 0}).size(), 5u);
-  const auto rest = heard({SimFault::Kind::kOverflow, 3 * kWireMs, 0, 4}, &dropped);
+  EXPECT_EQ(
+      heard({.kind = SimFault::Kind::kDrop, .at_ns = 3 * kWireMs, .for_ns = 5 * kWireMs}).size(),
+      5u);
+  const auto rest =
+      heard({.kind = SimFault::Kind::kOverflow, .at_ns = 3 * kWireMs, .count = 4}, &dropped);
   EXPECT_EQ(rest.size(), 6u);
   EXPECT_EQ(rest[3].stamp_ns, 7 * kWireMs);
   EXPECT_EQ(dropped, 4u);
 }
 
 TEST(SimWire, IsSilentWhileOurControllerIsOffTheBusAndSaysSo) {
-  const auto frames = heard({SimFault::Kind::kBusOff, 3 * kWireMs, 4 * kWireMs, 0});
+  const auto frames =
+      heard({.kind = SimFault::Kind::kBusOff, .at_ns = 3 * kWireMs, .for_ns = 4 * kWireMs});
   // 0, 1, 2 ms; bus-off; restarted at 7 ms; 7, 8, 9 ms.
   ASSERT_EQ(frames.size(), 8u);
   CanBusStatus status;
@@ -131,29 +137,34 @@ TEST(SimWire, IsSilentWhileOurControllerIsOffTheBusAndSaysSo) {
   EXPECT_EQ(frames[5].stamp_ns, 7 * kWireMs);
 }
 
-TEST(SimWire, TellsOfAPassiveControllerWhileFramesCome) {
-  const auto frames = heard({SimFault::Kind::kPassive, 3 * kWireMs, 4 * kWireMs, 0});
+TEST(SimWire, ReportsAPassiveControllerWhileFramesArrive) {
+  const auto frames =
+      heard({.kind = SimFault::Kind::kPassive, .at_ns = 3 * kWireMs, .for_ns = 4 * kWireMs});
   EXPECT_EQ(frames.size(), 12u);
   EXPECT_TRUE(frames[3].error);
 }
 
-TEST(SimWire, HoldsFramesBackAndGivesThemAtOnce) {
-  const auto frames = heard({SimFault::Kind::kDelay, 3 * kWireMs, 4 * kWireMs, 0});
+TEST(SimWire, HoldsFramesBackAndDeliversThemAtOnce) {
+  const auto frames =
+      heard({.kind = SimFault::Kind::kDelay, .at_ns = 3 * kWireMs, .for_ns = 4 * kWireMs});
   ASSERT_EQ(frames.size(), 10u);
   for (std::size_t i = 3; i <= 7; ++i) EXPECT_EQ(frames[i].stamp_ns, 7 * kWireMs);
 }
 
-TEST(SimWire, SendsAFrameTwiceThatNoiseDestroyed) {
+TEST(SimWire, SendsAFrameAgainThatNoiseDestroyed) {
   List node{wire_frame(1, 0)};
-  SimWire wire({.bit_rate = 500'000, .faults = {{SimFault::Kind::kNoise, 0, kWireMs, 0}}}, {&node});
+  SimWire wire(
+      {.bit_rate = 500'000, .faults = {{.kind = SimFault::Kind::kNoise, .for_ns = kWireMs}}},
+      {&node});
   EXPECT_EQ(wire.next()->stamp_ns, (55 + 31 + 55) * 2 * kUs);
 }
 
 TEST(SimWire, TakesTheInterfaceOfABusDown) {
   List node = List::ten(1);
-  SimWire wire({.faults = {{SimFault::Kind::kAbsent, 7 * kWireMs, kWireMs, 0},
-                           {SimFault::Kind::kDown, 2 * kWireMs, 3 * kWireMs, 0}}},
-               {&node});
+  SimWire wire(
+      {.faults = {{.kind = SimFault::Kind::kAbsent, .at_ns = 7 * kWireMs, .for_ns = kWireMs},
+                  {.kind = SimFault::Kind::kDown, .at_ns = 2 * kWireMs, .for_ns = 3 * kWireMs}}},
+      {&node});
   SimCanBus bus(&wire);
   bus.plan(wire.links());
   std::array<CanFrame, 16> into;

@@ -58,7 +58,7 @@ TEST_F(Connected, ReadsTheMemoryItWasHanded) {
 TEST_F(Connected, LooksUpNamesAgainWhenTheMapChanged) {
   ASSERT_EQ(client.find_zone("lobby").value(), 1u);
   zoned->change_map(2, {"lobby", "ward"});
-  // The news comes with the next answer, which refuses a number of the old map.
+  // The change arrives with the next answer, which refuses a number of the old map.
   EXPECT_EQ(client.lease(1).error().code, ErrorCode::kMismatch);
   EXPECT_EQ(client.find_zone("lobby").value(), 0u);
   EXPECT_TRUE(client.lease(0).ok());
@@ -66,7 +66,7 @@ TEST_F(Connected, LooksUpNamesAgainWhenTheMapChanged) {
 
 TEST_F(Connected, ReadsNothingByANumberOfTheMapBefore) {
   zoned->epoch = zones.map().epoch();
-  ASSERT_TRUE(client.zones());  // zoned was of a version that did not tell until now
+  ASSERT_TRUE(client.zones());  // this zoned was of a version that did not report it until now
   const DecodedPack pack = some_zone();
   zones.put(1, pack.chunks());
   int reads = 0;
@@ -111,7 +111,7 @@ TEST_F(Connected, AsksForTheNearestSignatures) {
   EXPECT_EQ(near->front().distance_m, 0.25F);
 }
 
-TEST_F(Connected, TellsWhyZonedRefuses) {
+TEST_F(Connected, ReportsWhyZonedRefuses) {
   zoned->fault = wire::Fault::Denied;
   EXPECT_EQ(client.pose().error(), (Error{ErrorCode::kIo, EACCES}));
   EXPECT_EQ(client.last_words(), "because of the test");

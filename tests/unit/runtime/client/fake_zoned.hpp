@@ -12,13 +12,13 @@
 
 namespace zonepack::test_support {
 
-// The other end of a client's socket, for one client: it hands over memory and answers by rote.
+// The other end of a client's socket, for one client: it passes memory and gives fixed answers.
 class FakeZoned {
  public:
   FakeZoned(const std::string& path, const SharedMemory& memory);
   ~FakeZoned();
 
-  // Zones 0 and 1 of map `serial` from now on; told to the client with its next answer.
+  // Serves zones 0 and 1 of map `serial` from now on; the client learns it with its next answer.
   void change_map(std::uint32_t serial, std::vector<std::string> names);
   std::atomic<wire::Fault> fault{wire::Fault::None};  // the answer to everything from now on
   std::atomic<int> answers_after_ms{0};

@@ -6,7 +6,7 @@
 
 namespace zonepack::test_support {
 
-// A signature as a client sees it, in the form in which the packer took it from the database.
+// A signature as a client sees it, in the form in which the packer read it from the database.
 packer::SignatureRecord record_from(const SignatureView& signature);
 
 }  // namespace zonepack::test_support

@@ -158,7 +158,7 @@ TEST_F(Reader, ReadsAnotherZoneAndForgetsItsOwnInTheMiddle) {
 }
 
 TEST(Overstay, StaysInsideTheSlotsWhateverIsWrittenThere) {
-  // The zone's slots stand apart; one byte outside of them is a crash.
+  // The zone's slots stand apart; reading one byte outside them crashes.
   const DecodedPack& pack = sample_map();
   const std::uint32_t slots = 2 * SharedZones::slots_for(pack.chunks());
   auto memory = SharedMemory::create("zonepack-test", shared_map_bytes(1, slots)).value();

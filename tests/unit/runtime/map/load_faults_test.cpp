@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What may happen to the file of a zone before and while it is loaded: each time that zone costs an
-// error which says what happened, or comes out right, and the other zone loads.
+// What may happen to the file of a zone before and while it is loaded: each time that zone gives an
+// error that says what happened, or loads correctly, and the other zone loads.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ class LoadFaults : public testing::TestWithParam<ReadMode> {
  protected:
   explicit LoadFaults(std::int32_t signatures = 8)
       : map_(signatures), a_(*map_.load(0, GetParam())), b_(*map_.load(1, GetParam())) {}
-  // Zone b, that nothing happened to, is as it was.
+  // Zone b, which is untouched, is as it was.
   ~LoadFaults() override { EXPECT_EQ(load(1), b_); }
 
   packer::Bytes load(ZoneId zone) {

@@ -76,7 +76,7 @@ TEST_P(LoaderDamage, AnyFlippedBitIsRefusedOrNotUsed) {
     same += decoded && *decoded == whole_;
   }
   EXPECT_EQ(refused + same, pack.size() * 8);
-  // What is not used are the stored bytes of other kinds, and nothing else.
+  // Only the stored bytes of other kinds are unused.
   std::size_t unused = 0;
   const PackReader reader = PackReader::open((disk_ / map_.packs[0].file).string()).value();
   const PayloadMask used = payload_closure(GetParam(), reader.index().grid_needs_scan());

@@ -36,7 +36,7 @@ TEST(RateLimit, APauseOfAnyLengthFillsTheBucketOnlyOnce) {
 }
 
 TEST(RateLimit, NeverLetsMoreThroughThanTimeAllows) {
-  // A reader of windows of 57 kB that does as it is told, for 10 s at 3 B/us less a bit.
+  // A reader of 57 kB windows that obeys the limit, for 10 s at slightly less than 3 B/us.
   constexpr std::uint64_t kRate = 2'999'999, kWindow = 57'001;
   RateLimit limit(kRate);
   std::int64_t now = 100'000 * kMs;
@@ -48,7 +48,7 @@ TEST(RateLimit, NeverLetsMoreThroughThanTimeAllows) {
     const double allowed = static_cast<double>(now - start) * kRate / 1e9;
     ASSERT_LE(static_cast<double>(bytes), allowed + kReadBufferBytes + kWindow);
   }
-  // And no less: all that time allowed was used.
+  // And no less: it used all the time allowed.
   EXPECT_GE(bytes, 10 * kRate);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int64_t kLoadMs = 1'000'000;
 
-// A clock that sleeping turns on, and a wish to give up at a time or after a number of questions.
+// A clock that sleeping advances, and a request to cancel at a time or after a number of queries.
 class DrivenHost final : public LoadHost {
  public:
   std::int64_t now_ns() noexcept override { return now; }

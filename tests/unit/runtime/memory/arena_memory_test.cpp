@@ -56,7 +56,7 @@ TEST_F(ArenaMemoryOf, AManagedZonedIsTheSameAfterACrashWithReadersAttached) {
   EXPECT_EQ(reader->read_only()[5], std::byte{77});
   EXPECT_EQ(reader->read_only()[6], std::byte{78});
   EXPECT_TRUE(handed.empty());
-  // And once more: the manager still keeps it.
+  // And again: the manager still keeps it.
   std::vector<HandedFile> again = manager.hand_over();
   source.handed = &again;
   EXPECT_TRUE(ArenaMemory::obtain(kBytes, source)->taken_over());

@@ -18,8 +18,7 @@ namespace {
 constexpr ByteCount kSlot = 16384;
 constexpr ByteCount kFixed = 5000;
 
-// Drives a Residency and a SlotPool as cycle and loader would, and knows which slot belongs to
-// whom.
+// Drives a Residency and a SlotPool as cycle and loader would, and knows the owner of each slot.
 class Driver {
  public:
   explicit Driver(std::uint32_t seed)
@@ -217,7 +216,7 @@ TEST(ResidencyProperties, HoldAfterEveryStepOfRandomUse) {
     evictions += driver.evictions();
     refusals += driver.refusals();
   }
-  // The driver does reach what it is for.
+  // The driver does reach the cases it is for.
   EXPECT_GT(evictions, 1000u);
   EXPECT_GT(refusals, 1000u);
 }

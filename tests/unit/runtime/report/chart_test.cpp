@@ -106,7 +106,7 @@ Chart memory_chart() {
 
 TEST(Chart, ShowsSeriesLimitShadesAndTimeline) {
   const std::string text = draw_chart(memory_chart()).file_text();
-  EXPECT_EQ(XmlCheck::fault_of(text), "");
+  EXPECT_EQ(XmlCheck::problem_in(text), "");
   EXPECT_EQ(count_of(text, ">Signatures &amp; bytes</text>"), 1u);
   EXPECT_EQ(count_of(text, ">limit: 100 signatures</text>"), 1u);
   EXPECT_EQ(count_of(text, "stroke-dasharray=\"6 4\""), 1u);
@@ -134,14 +134,14 @@ TEST(Chart, TheSameDataGivesTheSameBytes) {
 }
 
 TEST(Chart, SurvivesNoDataNoSpreadAndHugeValues) {
-  EXPECT_EQ(XmlCheck::fault_of(draw_chart(Chart{}).inline_text()), "");
+  EXPECT_EQ(XmlCheck::problem_in(draw_chart(Chart{}).inline_text()), "");
   for (const double value : {0.0, 1e-12, 1e300, kNaN, std::numeric_limits<double>::infinity()}) {
     Chart chart = memory_chart();
     chart.series = {series({{0, value}, {1, value}, {2, 1}}), series({{0, kNaN}})};
     for (const Quantity quantity : {Quantity::kNumber, Quantity::kBytes}) {
       chart.quantity = quantity;
       const std::string text = draw_chart(chart).inline_text();
-      EXPECT_EQ(XmlCheck::fault_of(text), "") << value;
+      EXPECT_EQ(XmlCheck::problem_in(text), "") << value;
       EXPECT_EQ(text.find("nan"), std::string::npos) << value;
       EXPECT_EQ(text.find("inf"), std::string::npos) << value;
     }

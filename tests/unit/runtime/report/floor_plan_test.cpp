@@ -102,7 +102,7 @@ TEST(PlanLabel, GivesWayToSignaturesOnlyWhereItCan) {
 
 TEST(FloorPlan, ShowsZonesPortalsSignaturesAndRoutes) {
   const std::string text = draw_floor_plan(two_rooms()).file_text();
-  EXPECT_EQ(XmlCheck::fault_of(text), "");
+  EXPECT_EQ(XmlCheck::problem_in(text), "");
   EXPECT_EQ(count_of(text, ">L1</text>"), 1u);
   EXPECT_EQ(count_of(text, ">R&lt;1&gt;</text>"), 1u);
   EXPECT_EQ(count_of(text, ">1.2 MiB</text>"), 1u);
@@ -132,7 +132,7 @@ TEST(FloorPlan, DrawsAMapOfOneZoneAndOfNone) {
   FloorPlan one;
   one.zones.push_back({"A", "", "", box(0, 0, 3, 3), kWhite});
   EXPECT_EQ(count_of(draw_floor_plan(one).inline_text(), ">A</text>"), 1u);
-  EXPECT_EQ(XmlCheck::fault_of(draw_floor_plan(FloorPlan{}).inline_text()), "");
+  EXPECT_EQ(XmlCheck::problem_in(draw_floor_plan(FloorPlan{}).inline_text()), "");
 }
 
 TEST(FloorPlan, LeavesOutWhatIsNotFinite) {
@@ -142,7 +142,7 @@ TEST(FloorPlan, LeavesOutWhatIsNotFinite) {
   plan.true_route.push_back({1, kFloorPlanNaN});
   plan.zones.push_back({"N", "", "", {{{kFloorPlanNaN, 0}, {1, kFloorPlanNaN}}, {}}, kWhite});
   const std::string text = draw_floor_plan(plan).inline_text();
-  EXPECT_EQ(XmlCheck::fault_of(text), "");
+  EXPECT_EQ(XmlCheck::problem_in(text), "");
   EXPECT_EQ(text.find("nan"), std::string::npos);
   EXPECT_EQ(text.find("\"-\""), std::string::npos);
   EXPECT_EQ(count_of(text, "opacity=\"0.5\""), 2u);

@@ -38,7 +38,7 @@ PackReport two_zones() {
   return map;
 }
 
-TEST(PackReport, TellsTheSmallestBudgetAndItsPair) {
+TEST(PackReport, StatesTheSmallestBudgetAndItsPair) {
   const Report page = make_pack_report(two_zones());
   EXPECT_EQ(page.facts[0].value, "3.1 MiB");
   EXPECT_EQ(page.facts[0].note,
@@ -50,7 +50,7 @@ TEST(PackReport, TellsTheSmallestBudgetAndItsPair) {
 
 TEST(PackReport, ColoursZonesByWhatTheyCharge) {
   const std::string html = to_html(make_pack_report(two_zones()));
-  EXPECT_EQ(XmlCheck::fault_of(html), "");
+  EXPECT_EQ(XmlCheck::problem_in(html), "");
   // L1 charges most, H1 half of it. Halos of labels repeat the fill.
   EXPECT_EQ(count_of(html, "Z\" fill=\"" + to_hex(ramp_color(1)) + "\""), 1u);
   EXPECT_EQ(count_of(html, "Z\" fill=\"" + to_hex(ramp_color(0.5)) + "\""), 1u);
@@ -75,9 +75,9 @@ TEST(PackReport, DrawsOneZoneNoSignaturesAndNothing) {
   map.zones[0].signatures = 0;
   map.zones[0].charged_bytes = 0;
   map.zones[0].signature_positions.clear();
-  EXPECT_EQ(XmlCheck::fault_of(to_html(make_pack_report(map))), "");
+  EXPECT_EQ(XmlCheck::problem_in(to_html(make_pack_report(map))), "");
   EXPECT_EQ(make_pack_report(map).tables[0].rows[0].back(), "");
-  EXPECT_EQ(XmlCheck::fault_of(to_sheet(make_pack_report(PackReport{})).file_text()), "");
+  EXPECT_EQ(XmlCheck::problem_in(to_sheet(make_pack_report(PackReport{})).file_text()), "");
 }
 
 TEST(PackReport, TheSameMapGivesTheSameBytes) {

@@ -23,10 +23,13 @@ Report sample() {
   report.title = "Map <hospital>";
   report.headline = "24 zones & 185 signatures.";
   report.origin = "zonepack";
-  report.facts = {{"zones", "24", "", false}, {"budget violations", "3", "must be 0", true}};
-  report.figures.push_back({"Plan", "How to read it.", drawing});
-  report.tables.push_back(
-      {"Zones", "By name.", {{"Zone"}, {"Bytes", true}}, {{"L1", "12"}, {"H1"}}});
+  report.facts = {{.name = "zones", .value = "24", .note = "", .bad = false},
+                  {.name = "budget violations", .value = "3", .note = "must be 0", .bad = true}};
+  report.figures.push_back({.title = "Plan", .caption = "How to read it.", .drawing = drawing});
+  report.tables.push_back({.title = "Zones",
+                           .caption = "By name.",
+                           .columns = {{.name = "Zone"}, {.name = "Bytes", .number = true}},
+                           .rows = {{"L1", "12"}, {"H1"}}});
   return report;
 }
 
@@ -42,7 +45,7 @@ class ReportFileTest : public testing::Test {
 
 TEST(Report, AsAPageIsWellFormedAndHoldsEverything) {
   const std::string html = to_html(sample());
-  EXPECT_EQ(XmlCheck::fault_of(html), "");
+  EXPECT_EQ(XmlCheck::problem_in(html), "");
   for (const char* part :
        {"<h1>Map &lt;hospital&gt;</h1>", "24 zones &amp; 185 signatures.", ">drawn</text>",
         "How to read it.", "<td>L1</td><td class=\"n\">12</td>", "<td>H1</td><td class=\"n\"></td>",
@@ -62,7 +65,7 @@ TEST(Report, AsAPageNeedsNothingFromOutside) {
 
 TEST(Report, AsASheetHoldsEverything) {
   const std::string svg = to_sheet(sample()).file_text();
-  EXPECT_EQ(XmlCheck::fault_of(svg), "");
+  EXPECT_EQ(XmlCheck::problem_in(svg), "");
   for (const char* part :
        {">Map &lt;hospital&gt;<", ">drawn<", ">How to read it.<", ">12<", ">must be 0<"}) {
     EXPECT_EQ(count_of(svg, part), 1u) << part;
@@ -83,8 +86,8 @@ TEST(Report, AWideTableGivesWayInItsWidestColumn) {
 }
 
 TEST(Report, WithNothingInItIsStillAPageAndASheet) {
-  EXPECT_EQ(XmlCheck::fault_of(to_html(Report{})), "");
-  EXPECT_EQ(XmlCheck::fault_of(to_sheet(Report{}).file_text()), "");
+  EXPECT_EQ(XmlCheck::problem_in(to_html(Report{})), "");
+  EXPECT_EQ(XmlCheck::problem_in(to_sheet(Report{}).file_text()), "");
 }
 
 TEST_F(ReportFileTest, TheNameDecidesTheKind) {

@@ -30,16 +30,16 @@ Svg everything() {
 }
 
 TEST(XmlCheck, FindsWhatIsWrong) {
-  EXPECT_EQ(XmlCheck::fault_of("<a b=\"c\"><d/>&amp;</a>"), "");
+  EXPECT_EQ(XmlCheck::problem_in("<a b=\"c\"><d/>&amp;</a>"), "");
   for (const char* text :
        {"", "<a>", "<a></b>", "<a b=c/>", "<a>&</a>", "<a/><b/>", "<a b=\"1\" b=\"2\"/>"}) {
-    EXPECT_NE(XmlCheck::fault_of(text), "") << text;
+    EXPECT_NE(XmlCheck::problem_in(text), "") << text;
   }
 }
 
 TEST(Svg, IsWellFormed) {
-  EXPECT_EQ(XmlCheck::fault_of(everything().file_text()), "");
-  EXPECT_EQ(XmlCheck::fault_of(everything().inline_text()), "");
+  EXPECT_EQ(XmlCheck::problem_in(everything().file_text()), "");
+  EXPECT_EQ(XmlCheck::problem_in(everything().inline_text()), "");
 }
 
 TEST(Svg, EscapesTextAndHints) {
@@ -82,7 +82,7 @@ TEST(Svg, PlacesOneDrawingInAnother) {
   Svg sheet(300, 300);
   sheet.place(everything(), {20, 30});
   const std::string text = sheet.file_text();
-  EXPECT_EQ(XmlCheck::fault_of(text), "");
+  EXPECT_EQ(XmlCheck::problem_in(text), "");
   EXPECT_EQ(count_of(text, "<svg x=\"20\" y=\"30\" width=\"200\" height=\"100\">"), 1u);
 }
 

@@ -123,7 +123,7 @@ TEST(RunReport, ShowsLimitsPeaksAndTheHash) {
   const RunSummary s = summary();
   const RunTrace trace = three_rooms();
   const std::string html = to_html(make_run_report({"map", "can0.log", s, trace, kNoBaseline}));
-  EXPECT_EQ(XmlCheck::fault_of(html), "");
+  EXPECT_EQ(XmlCheck::problem_in(html), "");
   for (const char* part : {"60 signatures loaded, 10 unloaded.", "(98.2 %)", "missing for 2 s",
                            "limit: 50 signatures", "c0ffee", "B&lt;1&gt;"}) {
     EXPECT_GE(count_of(html, part), 1u) << part;
@@ -164,7 +164,7 @@ TEST(RunReport, WithoutTruthThereIsNoErrorFigure) {
 TEST(RunReport, OfARunWithoutSamplesIsStillAPage) {
   const report::Report page =
       make_run_report({"map", "can0.log", RunSummary{}, RunTrace{}, kNoBaseline});
-  EXPECT_EQ(XmlCheck::fault_of(to_html(page)), "");
+  EXPECT_EQ(XmlCheck::problem_in(to_html(page)), "");
   EXPECT_EQ(to_html(page).find("nan"), std::string::npos);
 }
 
@@ -173,7 +173,7 @@ TEST(RunReport, ThePictureHoldsTheRouteAndTheCurves) {
   const RunTrace trace = three_rooms();
   const report::Report page = make_run_picture({"map", "can0.log", s, trace, kNoBaseline});
   const std::string svg = report::to_sheet(page).file_text();
-  EXPECT_EQ(XmlCheck::fault_of(svg), "");
+  EXPECT_EQ(XmlCheck::problem_in(svg), "");
   EXPECT_EQ(page.figures.size(), 3u);
   EXPECT_EQ(count_of(svg, ">portal</text>"), 1u);
   EXPECT_EQ(count_of(svg, ">unloaded</text>"), 1u);

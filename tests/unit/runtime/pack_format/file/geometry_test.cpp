@@ -8,7 +8,7 @@ namespace {
 
 const Polygon kSquareWithHole{{{0, 0}, {4, 0}, {4, 4}, {0, 4}}, {{{1, 1}, {1, 2}, {2, 2}, {2, 1}}}};
 
-TEST(Geometry, TellsInsideBorderAndOutsideWithHoles) {
+TEST(Geometry, DistinguishesInsideBorderAndOutsideWithHoles) {
   EXPECT_EQ(side_of(kSquareWithHole, {3, 3}), Side::kInside);
   EXPECT_EQ(side_of(kSquareWithHole, {1.5, 1.5}), Side::kOutside);
   EXPECT_EQ(side_of(kSquareWithHole, {5, 1.5}), Side::kOutside);

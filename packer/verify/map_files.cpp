@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "packer/verify/map_source.hpp"
+#include "packer/verify/map_files.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -10,7 +10,7 @@
 namespace zonepack::packer {
 namespace {
 
-class DiskFile : public FileSource {
+class DiskFile : public MapFile {
  public:
   explicit DiskFile(StorageFile file) : file_(std::move(file)) {}
   std::uint64_t size() const override { return file_.size(); }
@@ -24,7 +24,7 @@ class DiskFile : public FileSource {
 
 }  // namespace
 
-FolderSource::FolderSource(std::filesystem::path folder) : folder_(std::move(folder)) {
+FolderFiles::FolderFiles(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code error;
   if (!std::filesystem::is_directory(folder_, error)) {
     throw std::runtime_error(folder_.string() +
@@ -32,7 +32,7 @@ FolderSource::FolderSource(std::filesystem::path folder) : folder_(std::move(fol
   }
 }
 
-std::vector<std::string> FolderSource::names() const {
+std::vector<std::string> FolderFiles::names() const {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
     if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
@@ -41,10 +41,10 @@ std::vector<std::string> FolderSource::names() const {
   return names;
 }
 
-Result<std::unique_ptr<FileSource>> FolderSource::open(const std::string& name) const {
+Result<std::unique_ptr<MapFile>> FolderFiles::open(const std::string& name) const {
   Result<StorageFile> file = StorageFile::open((folder_ / name).string());
   if (!file) return file.error();
-  return std::unique_ptr<FileSource>(std::make_unique<DiskFile>(std::move(*file)));
+  return std::unique_ptr<MapFile>(std::make_unique<DiskFile>(std::move(*file)));
 }
 
 }  // namespace zonepack::packer

@@ -11,33 +11,33 @@
 
 #include "platform/base/result.hpp"
 
-// Where the files of a map come from: a folder, or memory.
+// The files of a map, from a folder or from memory.
 namespace zonepack::packer {
 
-class FileSource {
+class MapFile {
  public:
-  virtual ~FileSource() = default;
+  virtual ~MapFile() = default;
   virtual std::uint64_t size() const = 0;
   // Fills all of `out`, or fails.
   virtual Result<void> read_at(std::uint64_t offset, std::span<std::byte> out) const = 0;
 };
 
-class MapSource {
+class MapFiles {
  public:
-  virtual ~MapSource() = default;
+  virtual ~MapFiles() = default;
   // Names of the files there, sorted.
   virtual std::vector<std::string> names() const = 0;
   // kNotFound, kIo.
-  virtual Result<std::unique_ptr<FileSource>> open(const std::string& name) const = 0;
+  virtual Result<std::unique_ptr<MapFile>> open(const std::string& name) const = 0;
 };
 
-// The files of a folder.
-class FolderSource : public MapSource {
+// The regular files of a folder.
+class FolderFiles : public MapFiles {
  public:
   // Throws std::runtime_error when there is no such folder.
-  explicit FolderSource(std::filesystem::path folder);
+  explicit FolderFiles(std::filesystem::path folder);
   std::vector<std::string> names() const override;
-  Result<std::unique_ptr<FileSource>> open(const std::string& name) const override;
+  Result<std::unique_ptr<MapFile>> open(const std::string& name) const override;
 
  private:
   std::filesystem::path folder_;
