@@ -2,6 +2,8 @@
 // zonectl: asks and tells a running zoned. Wiring only; the commands live in runtime/ctl.
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <functional>
+#include <iostream>
 
 #include "runtime/ctl/commands/commands.hpp"
 
@@ -11,7 +13,7 @@ using namespace zonepack;
 
 // What the command line asked for; run once the socket is known.
 struct Command {
-  std::function<int(const std::string& socket)> run;
+  std::function<Outcome<void>(const std::string& socket)> run;
 };
 
 template <typename Run>
@@ -109,5 +111,8 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   const auto socket = socket_path(arguments);
-  return socket ? command.run(*socket) : 1;
+  const Outcome<void> done = socket ? command.run(*socket) : socket.error();
+  if (done) return 0;
+  std::cerr << "zonectl: " << done.error().message << '\n';
+  return exit_code(done.error());
 }
