@@ -36,7 +36,7 @@ struct FieldKind {
     return words_of<Enum>();
   }
 
-  // A default that is not allowed stands for none.
+  // A default out of range means that there is none.
   template <typename Number>
   std::string number(Number value) const {
     const auto real = static_cast<double>(value);

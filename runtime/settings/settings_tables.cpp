@@ -3,7 +3,7 @@
 
 namespace zonepack {
 
-constexpr double kMost = 9e15;  // no limit to speak of
+constexpr double kMost = 9e15;  // effectively no limit
 
 const Fields<MapSettings>& map_fields() {
   using S = MapSettings;
