@@ -237,11 +237,10 @@ bool read_dbc(ByteSpan bytes) {
     frame.id = message.id;
     frame.extended = message.extended;
     for (const DbcSignal& signal : message.signals) {
-      std::string fault;
-      const auto found = loaded.file.find(message.name + "." + signal.name, fault);
+      const auto found = loaded.file.find(message.name + "." + signal.name);
       if (found) {
         sink = static_cast<std::uint64_t>(read_signal(found->signal, frame).raw);
-      } else if (fault.empty()) {
+      } else if (found.error().message.empty()) {
         std::abort();
       }
     }

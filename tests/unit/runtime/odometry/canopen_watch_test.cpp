@@ -57,7 +57,7 @@ TEST(CanOpenWatch, WantsEveryNodeOperationalAndHeardInTime) {
 
 TEST(CanOpenWatch, ReportsNodesThatRestart) {
   CanOpenWatch watch(two_nodes());
-  EXPECT_FALSE(watch.take(frame(0, 0x701, {0})));  // the first start is none
+  EXPECT_FALSE(watch.take(frame(0, 0x701, {0})));  // the first start is not a restart
   watch.take(frame(10, 0x701, {5}));
   EXPECT_TRUE(watch.take(frame(50, 0x701, {0})));
   EXPECT_EQ(watch.counters().boots, 1u);
