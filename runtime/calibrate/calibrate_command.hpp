@@ -9,14 +9,14 @@
 
 namespace zonepack {
 
-// What `zoned calibrate` is told; empty json: not given.
+// The arguments of `zoned calibrate`; json may be empty.
 struct CalibrateArguments {
   std::string config, can, truth, json;
 };
 
 // Reads the log with the settings, estimates wheel scale and track against the truth, and prints
 // the YAML to paste with the errors before and after. Returns the exit code: 0, or 1 when something
-// could not be read or written, or the drive tells too little.
+// could not be read or written, or the drive does not determine them.
 int run_calibrate(const CalibrateArguments& arguments);
 
 // The keys of the section odometry that change, as YAML to paste over the present ones.

@@ -65,7 +65,7 @@ std::vector<Window> windows_of(std::span<const WheelStep> steps, const TruthTrac
   return windows;
 }
 
-// Parameters: mean scale, track, and right - left when the sides are told apart.
+// Parameters: mean scale, track, and right - left when the sides are distinguished.
 CalibrationValues values_of(std::span<const double> parameters) {
   const double difference = parameters.size() > 2 ? parameters[2] : 0;
   return {parameters[0] - difference / 2, parameters[0] + difference / 2, parameters[1]};

@@ -7,7 +7,7 @@ namespace zonepack {
 namespace {
 
 // A new member of these must be written and read below, or a recording would not hold it. (Not
-// Command::map: what is not of the map in use never becomes an input.)
+// Command::map: a command for another map never becomes an input.)
 static_assert(sizeof(Command) == 296 && sizeof(LoadResult) == 40 && sizeof(PoseCorrection) == 64 &&
               sizeof(LineEdge) == 16);
 

@@ -16,11 +16,11 @@
 
 namespace zonepack {
 
-// What a run decides on beside the inputs of its cycles, so that a recording needs neither map nor
+// What a run decides on besides the inputs of its cycles, so that a recording needs neither map nor
 // settings file.
 struct RecordingPreface {
   std::string program;              // version that recorded
-  std::int64_t realtime_ns = 0;     // CLOCK_REALTIME at the start; 0: not told
+  std::int64_t realtime_ns = 0;     // CLOCK_REALTIME at the start; 0: unknown
   std::string settings_path;        // for messages, and what its relative paths refer to
   std::string settings;             // the file's text
   std::string dbc;                  // the text of the file that can.dbc names; empty: none
@@ -30,12 +30,12 @@ struct RecordingPreface {
   std::optional<RunStart> start;
 };
 
-// Hands over the blocks that hold the preface, in order.
+// Passes the blocks that hold the preface to take_block, in order.
 void write_preface(const RecordingPreface& preface,
                    const std::function<void(ByteSpan block)>& take_block);
 
-// Reads the contents of these blocks, joined. kBadStructure; kBadVersion (detail: the field) for a
-// field that is not known.
+// Reads the contents of these blocks, joined. kBadStructure; kBadVersion (detail: the field) for an
+// unknown field.
 Result<RecordingPreface> read_preface(ByteSpan content);
 
 // Contents longer than this are refused: the largest manifest, and room for the texts.

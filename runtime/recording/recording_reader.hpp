@@ -28,7 +28,7 @@ class RecordingReader {
   static Outcome<RecordingReader> open(const std::string& path);
 
   const RecordingPreface& preface() const noexcept { return preface_; }
-  // Where the run stood before the first cycle; nothing when that is cycle 0.
+  // The state of the run before the first cycle; nothing when that is cycle 0.
   const std::optional<Checkpoint>& checkpoint() const noexcept { return checkpoint_; }
   std::uint64_t first_cycle() const noexcept { return next_cycle_first_; }
 
@@ -43,7 +43,7 @@ class RecordingReader {
   // After the last cycle. Why it is the last, when the run did not end there: a complete message;
   // empty when it did.
   const std::string& note() const noexcept { return note_; }
-  // Whether cycles that were run are missing: cut off, damaged or lost.
+  // False when cycles of the run are missing: cut off, damaged or lost.
   bool complete() const noexcept { return complete_; }
   const std::optional<RecordingEnd>& end() const noexcept { return end_; }
 
@@ -58,7 +58,7 @@ class RecordingReader {
   void stop(const std::string& why, bool complete = false);
 
   std::string path_;
-  std::vector<StorageFile> files_;  // read one after the other
+  std::vector<StorageFile> files_;  // read one after another
   std::size_t file_ = 0;
   std::uint64_t offset_ = 0;
   RecordingPreface preface_;

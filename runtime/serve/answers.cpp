@@ -13,7 +13,7 @@ namespace {
 using flatbuffers::FlatBufferBuilder;
 using flatbuffers::Offset;
 
-// A page is full when so much of a message is used: what may follow is shorter than the rest.
+// A page is full when this much of a message is used: whatever may follow fits in the rest.
 constexpr std::size_t kPageBytes = kMostMessageBytes - 2048;
 constexpr std::size_t kMostChanges = 1000;
 constexpr std::size_t kMostRouteZones = 128;
@@ -146,7 +146,7 @@ Message answer_route(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
                                         count < route.zones.size(), hinted));
 }
 
-Message tell_events(MessageBuilder& to, const ServedMap& map, std::span<const Event>& events) {
+Message events_notice(MessageBuilder& to, const ServedMap& map, std::span<const Event>& events) {
   FlatBufferBuilder& builder = to.builder();
   std::vector<Offset<wire::Event>> rows;
   std::size_t count = 0;

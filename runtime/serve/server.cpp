@@ -11,7 +11,7 @@
 namespace zonepack {
 namespace {
 
-constexpr std::uint32_t kFirstSession = 16;  // tokens of the poller; listeners have those below
+constexpr std::uint32_t kFirstSession = 16;  // tokens of the poller; listeners have lower ones
 constexpr std::size_t kMostEventsAtOnce = 256;
 constexpr std::int64_t kAcceptPause_ns = 100'000'000;
 
@@ -160,7 +160,7 @@ void Server::turn(int timeout_ms) {
     if (one.readable || one.closed) receive(*session);
     if (one.closed) session->drop();
   }
-  tell_poses();
+  send_poses();
   tidy();
 }
 
@@ -170,7 +170,7 @@ void Server::take_events() {
   for (Event event; ports_.events.pop(event);) {
     const bool changed = event.kind == EventKind::kMapChanged;
     if (event.map != map_->serial && !changed) {
-      tell_subscribers();
+      notify_subscribers();
       if (offered_ && offered_->serial == event.map) change_map();  // map_changed was lost
       if (event.map != map_->serial) continue;
     }
@@ -182,10 +182,10 @@ void Server::take_events() {
       ++counters_.map_refusals;
     }
     if (!changed && events_.size() < kMostEventsAtOnce) continue;
-    tell_subscribers();
+    notify_subscribers();
     if (changed) change_map();
   }
-  tell_subscribers();
+  notify_subscribers();
   if (lost == lost_events_) return;
   if (ports_.resident_generation) map_->zones.resync(ports_.resident_generation);
   for (auto& session : sessions_) {
@@ -194,14 +194,14 @@ void Server::take_events() {
   lost_events_ = lost;
 }
 
-// The events gathered so far, which are of the map in use.
-void Server::tell_subscribers() {
+// Sends the events gathered so far, which belong to the map in use.
+void Server::notify_subscribers() {
   const bool anyone = std::ranges::any_of(
       sessions_, [](const auto& session) { return session && session->wants_events; });
   for (std::span<const Event> rest = events_; anyone && !rest.empty();) {
     MessageBuilder message;
     const std::size_t before = rest.size();
-    const Message notice = tell_events(message, *map_, rest);
+    const Message notice = events_notice(message, *map_, rest);
     for (auto& session : sessions_) {
       if (!session || !session->wants_events) continue;
       const std::uint64_t lost_before = session->lost_events();
@@ -216,11 +216,11 @@ void Server::settle() {
   handler_.router().settle(now_ns_, ports_.status.load().now_ns, ports_.lease_ns,
                            [this](const CommandRouter::Settled& settled) {
                              if (Session* const session = session_of(settled.client)) {
-                               handler_.tell(*session, settled);
+                               handler_.deliver(*session, settled);
                              }
                            });
   if (const auto dump = handler_.poll_dump()) {
-    if (Session* const session = session_of(dump->client)) RequestHandler::tell(*session, *dump);
+    if (Session* const session = session_of(dump->client)) RequestHandler::deliver(*session, *dump);
   }
   counters_.leases = static_cast<std::uint32_t>(handler_.router().leases());
 }
@@ -235,7 +235,8 @@ void Server::accept(std::size_t listener) {
   for (std::size_t i = 0; i < kMostAccepts; ++i) {
     Result<LocalSocket> socket = listeners_[listener].socket.accept();
     if (!socket) {
-      // Out of descriptors, say: who waits goes on waiting, and this thread does not spin.
+      // Out of descriptors, for example: waiting clients keep waiting, and this thread does not
+      // spin.
       if (socket.error().code != ErrorCode::kBusy) pause_or_resume(listeners_[listener], listener);
       return;
     }
@@ -244,8 +245,8 @@ void Server::accept(std::size_t listener) {
     if (place == sessions_.end()) {
       ++counters_.clients_refused;
       MessageBuilder message;
-      // If even this finds no room, closing says it too.
-      [[maybe_unused]] const auto told =
+      // If there is no room even for this, closing says it too.
+      [[maybe_unused]] const auto sent =
           socket->send(message.fault(0, wire::Fault::TooMany, "too many clients (serve.clients)"));
       continue;
     }
@@ -277,7 +278,7 @@ void Server::receive(Session& session) {
   }
 }
 
-void Server::tell_poses() {
+void Server::send_poses() {
   const auto wants = [this](const auto& session) {
     return session && session->pose_period_ns > 0 && session->next_pose_ns <= now_ns_;
   };

@@ -48,7 +48,7 @@ void read_signal_entry(const std::string& name, const YAML::Node& node, FaultLis
   signals.emplace(name, signal);
 }
 
-// Signals by the names that stand in the settings: those of can.signals, then those of the DBC.
+// Signals by the names that the settings use: those of can.signals, then those of the DBC file.
 class SignalNames {
  public:
   SignalNames(CanSettings& can, FaultList& faults) : can_(can), faults_(faults) {}
@@ -82,7 +82,7 @@ class SignalNames {
                     known_words_text(name, known));
   }
 
-  // The longest GenMsgCycleTime of the messages asked for so far; 0 when none tells.
+  // The longest GenMsgCycleTime of the messages asked for so far; 0 when none has one.
   double longest_cycle_s() const noexcept { return longest_cycle_s_; }
 
  private:
@@ -121,7 +121,8 @@ void read_can(YamlSection& file, const std::string& path, CanSettings& can, Sign
   names.load();
 }
 
-// Frames come once a cycle; two may be lost, and the timeout is seen at the end of a control cycle.
+// A message comes once per its cycle time; two may be lost, and only a control cycle notices the
+// timeout.
 void time_out_by_cycle(double longest_cycle_s, double period_hz, double& timeout_s) {
   constexpr double kCycles = 3;
   constexpr double kLeast_s = 0.01;
@@ -132,7 +133,7 @@ void time_out_by_cycle(double longest_cycle_s, double period_hz, double& timeout
 
 // A key of the section odometry and the signal that it names.
 struct SignalKey {
-  std::string key;  // as in `invert`, too
+  std::string key;  // also as in `invert`
   std::string name;
 };
 
@@ -177,7 +178,7 @@ double metres_per_unit(const OdometrySettings& odometry) {
 bool is_left(const std::string& key) { return key.ends_with("left"); }
 bool is_right(const std::string& key) { return key.ends_with("right"); }
 
-// What of the keys does not go together.
+// Reports keys that contradict each other.
 void check_units(const YamlSection& section, const OdometrySettings& odometry,
                  const std::vector<SignalKey>& keys, FaultList& faults) {
   const auto add = [&](const char* key, const std::string& text) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drives a recording's inputs through the cycle in one thread, each run of it inside measured(),
 // for counting its instructions (instructions.sh). Prints what each cycle was given: its number,
-// frames, corrections, loads and commands, and how many events it told.
+// frames, corrections, loads and commands, and how many events it produced.
 //
 //   recorded_cycles RECORDING [CYCLES]
 #include <cstdio>
@@ -40,7 +40,7 @@ int fail(const std::string& what) {
 
 }  // namespace
 
-// Its result, so that the call is no jump that never comes back.
+// Returns a result, so that the call does not become a tail jump that never returns.
 [[gnu::noinline]] std::uint64_t measured(Cycle& cycle, const CycleInput& input) {
   return cycle.run(input).cycles;
 }

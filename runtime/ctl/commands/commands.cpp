@@ -58,13 +58,8 @@ void print_status(const wire::Status& status) {
   std::cout << WatchView::line(status);
   std::cout << "map version " << map_version(status) << '\n';
   for (const std::string& complaint : complaints(status)) std::cout << complaint << '\n';
-  for (const Figure& figure : figures_of(status)) {
-    std::printf("%-22s %s\n", figure.key,
-                figure.kind != Figure::Kind::kFlag ? figure.value.c_str()
-                : figure.value == "1"              ? "yes"
-                                                   : "no");
-  }
-  for (const std::string& line : line_words(status)) std::printf("line %s\n", line.c_str());
+  for (const std::string& line : figure_lines(status)) std::cout << line << '\n';
+  for (const std::string& line : line_words(status)) std::cout << "line " << line << '\n';
 }
 
 void print_notice(const wire::Reply& notice) {

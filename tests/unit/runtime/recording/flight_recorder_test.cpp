@@ -87,11 +87,11 @@ TEST_F(FlightRecorderTest, KeepsAMapForAsLongAsACycleNeedsIt) {
     }
     return true;
   };
-  offer(2);  // refused, say
+  offer(2);  // refused, for example
   offer(3);
   map = 3;  // in use from here on
   EXPECT_TRUE(has(2) && has(3));
-  pass(100);  // all segments begin behind both offers
+  pass(100);  // all segments begin after both offers
   EXPECT_FALSE(has(2));
   EXPECT_TRUE(has(3));
   map = 1;
@@ -117,7 +117,7 @@ TEST_F(FlightRecorderTest, DumpsAWholeRunThatReplaysToTheSameEvents) {
   }
 }
 
-TEST_F(FlightRecorderTest, DumpsWhileTheRunGoesOnUpToThatMoment) {
+TEST_F(FlightRecorderTest, DumpsARunInProgressUpToThatMoment) {
   auto flight = FlightRecorder::open(path("flight"), true, 64 * kMiB, drive.preface());
   std::uint64_t saved_at = 0;
   drive.drive(6, path("live.jsonl"), nullptr, flight->get(),
@@ -141,7 +141,7 @@ TEST_F(FlightRecorderTest, KeepsItsBytesAndForgetsTheOldest) {
   auto flight = FlightRecorder::open(path("flight"), true, limit, drive.preface());
   for (std::uint64_t cycle = 0; cycle < 300; ++cycle) {
     append(**flight, cycle);
-    // The last block of a segment may go over: 60 kB in each of 8, and the preface.
+    // The last block of a segment may exceed it: 60 kB in each of 8, and the preface.
     EXPECT_LE((*flight)->kept_bytes(), limit + 8 * 65'000 + 10'000);
   }
   // 300 blocks of 60 kB are 18 MB; of 4 MiB at least 7 of 8 segments are full.
@@ -172,8 +172,8 @@ TEST_F(FlightRecorderTest, KeepsTheFilesOfTheRunBefore) {
   EXPECT_NE(reader->next(), nullptr);
 }
 
-// The beginning is gone: from the checkpoint the run goes on as from a guess.
-TEST_F(FlightRecorderTest, GoesOnFromACheckpointAsFromAGuess) {
+// The beginning is gone: from the checkpoint the run continues as from a guess.
+TEST_F(FlightRecorderTest, ContinuesFromACheckpointAsFromAGuess) {
   auto flight = FlightRecorder::open(path("flight"), true, 64 * kMiB, drive.preface());
   bool lost = false;
   drive.drive(7, path("live.jsonl"), nullptr, flight->get(),
@@ -202,7 +202,7 @@ TEST_F(FlightRecorderTest, GoesOnFromACheckpointAsFromAGuess) {
   EXPECT_EQ(end_of(again), end_of(live));
 }
 
-TEST_F(FlightRecorderTest, CountsWhatItCannotWriteAndGoesOn) {
+TEST_F(FlightRecorderTest, CountsWhatItCannotWriteAndContinues) {
   auto flight = FlightRecorder::open(path("flight"), true, kMiB, drive.preface());
   append(**flight, 0);
   fs::remove_all(path("flight"));

@@ -33,9 +33,9 @@ inline std::string text_of(const std::string& path) {
   return text.str();
 }
 
-// The paper's loop through the sample building, driven as a robot would be: cycles come late, are
-// left out, readers hold zones, people pin and freeze, loads fail and are cancelled, lines change.
-// What happens when is the seed's to say.
+// The paper's loop through the sample building, driven as a robot would be: cycles come late or are
+// skipped, readers hold zones, people pin and freeze, loads fail and are cancelled, lines change.
+// The seed decides what happens when.
 class RecordedDrive {
  public:
   RecordedDrive()
@@ -62,7 +62,7 @@ class RecordedDrive {
     return preface;
   }
 
-  // After each cycle's inputs are in the tap: drains it, or does not, or looks.
+  // Called after each cycle's inputs are in the tap: may drain it or look at it.
   using AfterCycle = std::function<void(std::uint64_t cycle, InputWriter& writer)>;
 
   // Drives, and writes the events to a file. file and flight may be null. Returns the hash of the

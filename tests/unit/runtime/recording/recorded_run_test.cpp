@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was recorded of a run, driven again, gives the same events byte for byte.
+// A recording of a run, replayed, gives the same events byte for byte.
 #include "runtime/replay/recorded_run.hpp"
 
 #include <gmock/gmock.h>
@@ -55,7 +55,7 @@ TEST_F(RecordedRunTest, GivesTheSameEventsByteForByte) {
     EXPECT_EQ(result->live_hash, live_hash);
     ASSERT_EQ(text_of(path("again.jsonl")), text_of(path("live.jsonl"))) << "seed " << seed;
   }
-  // The drives were worth it: every kind of trouble came.
+  // The drives cover every kind of trouble.
   for (const char* word :
        {"load_cancelled", "load_given_up", "load_failed", "evicted", "blocked", "zone_entered",
         "correction_rejected", "not_keeping_up", "docked", "undocked", "hold_begun", "hold_ended",
@@ -64,7 +64,7 @@ TEST_F(RecordedRunTest, GivesTheSameEventsByteForByte) {
   }
 }
 
-// The same inputs but one: shown to be what the events depend on.
+// The same inputs except one, which shows that the events depend on it.
 TEST_F(RecordedRunTest, DependsOnEveryInput) {
   record(1);
   auto reader = RecordingReader::open(path("run.zpr"));

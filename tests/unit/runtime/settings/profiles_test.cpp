@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ready-made robots of config/: a candump log made byte by byte as the maker's manual tells,
-// read with the robot's settings, ends where the drive that it was made from ends.
+// The ready-made robots of config/: a candump log, built byte by byte as the vendor's manual
+// describes and read with the robot's settings, ends where the drive it was made from ends.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 using testing::IsEmpty;
 
-// A drive of 40 s: left and right ways in metres, and where it leads.
+// A drive of 40 s: left and right distances in metres, and where it leads.
 struct Wheels {
   double left_m = 0;
   double right_m = 0;
@@ -31,7 +31,7 @@ Wheels speeds_at(double t_s) {
   return {ramp * (0.6 + 0.2 * std::sin(0.9 * t_s)), ramp * (0.6 - 0.25 * std::sin(0.5 * t_s))};
 }
 
-// A log that is written as candump -l does.
+// A log as candump -l writes it.
 class Log {
  public:
   explicit Log(const std::string& name) : path_(testing::TempDir() + name), file_(path_) {}
@@ -68,7 +68,7 @@ std::uint64_t float_bits(double value) {
   return std::bit_cast<std::uint32_t>(static_cast<float>(value));
 }
 
-// Writes the frames of one moment: ways so far and present speeds.
+// Writes the frames of one moment: distances so far and present speeds.
 using Write = std::function<void(Log&, double t_s, const Wheels& ways, const Wheels& speeds)>;
 
 struct DriveEnd {
@@ -238,7 +238,7 @@ TEST(Profiles, CanOpen402DataIsRefusedWhileAHeartbeatIsMissing) {
   // The last heartbeat came at 9.9 s; from 10.2 s to 12 s nothing was believed: 2 * 90 frames.
   EXPECT_NEAR(static_cast<double>(outcome.counters.unwatched), 180, 4);
   EXPECT_EQ(outcome.counters.gaps, 1u);
-  // Positions know the way all the same; only its curve is lost.
+  // Positions still know the distance; only its curve is lost.
   EXPECT_LT(outcome.error_m(), 0.15);
   EXPECT_LT(std::abs(wrap_angle(outcome.pose.yaw_rad - outcome.truth.yaw_rad)), 0.005);
 }
