@@ -9,10 +9,9 @@
 namespace zonepack::packer {
 namespace {
 
-constexpr std::uint64_t kFrameBytes = 96;  // FlatBuffers' own offsets, lengths, padding
-constexpr std::uint64_t kWorthCutting =
-    1024;                             // less room than this is not worth cutting a table for
-constexpr std::size_t kShared = 512;  // equal columns of up to so many bytes are stored once
+constexpr std::uint64_t kFrameBytes = 96;      // FlatBuffers' own offsets, lengths, padding
+constexpr std::uint64_t kWorthCutting = 1024;  // less room is not worth cutting a table for
+constexpr std::size_t kShared = 512;           // equal columns up to this size are stored once
 
 std::size_t alignment_of(const EncodedColumn& column) {
   if (column.codec != fb::ColumnCodec::Raw) return 1;

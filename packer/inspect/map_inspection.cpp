@@ -8,7 +8,6 @@
 #include "packer/console/text_table.hpp"
 #include "packer/decode/map_reader.hpp"
 #include "packer/verify/problem.hpp"
-#include "platform/storage.hpp"
 #include "runtime/pack_format/file/accounting.hpp"
 
 namespace zonepack::packer {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "packer/verify/problem.hpp"
 
-#include <cstring>
-
 namespace zonepack::packer {
 namespace {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/base/result.hpp"
+#include "runtime/pack_format/chunk_view.hpp"
 
 // What is wrong with a map: where, what was expected, and what to do about it.
 namespace zonepack::packer {

@@ -17,15 +17,14 @@
 // 1. Only zones whose z range contains z count (z_min <= z < z_max; a zone without bounds contains
 //    every height). Nothing else separates floors above each other.
 //
-// 2. Inside a zone takes precedence over on the border of one (side_of: within 1e-9 m of an edge).
+// 2. A zone that has it inside takes precedence over one that has it on its border (side_of:
+//    within 1e-9 m of an edge).
 //
-// 3. Among several zones that have it inside, or several that have it on their border, the zone
-// whose
-//    name sorts first by bytes gets it.
+// 3. Among several zones that have it inside, or several that have it on their border, it goes to
+//    the one whose name sorts first by bytes.
 //
 // 4. In no zone, it is an orphan. Its nearest zone is the one with the nearest border, among
-// equally
-//    near ones the first by name; zones of the right height, if any, come first.
+//    equally near ones the first by name; zones of the right height, if any, come first.
 //
 // So every signature is in at most one zone, whatever the order of zones and signatures.
 namespace zonepack::packer {

@@ -116,7 +116,8 @@ void read_bulk(const fb::ChunkEntry& entry, ByteSpan bytes) {
 
 bool read_decoded(const fb::ChunkEntry& entry, ByteSpan bytes) {
   if (!check_chunk(bytes, entry)) return false;
-  sink = packer::find_fault(entry, bytes).has_value() + packer::refers_to_scan(entry, bytes);
+  sink =
+      packer::find_chunk_problem(entry, bytes).has_value() + packer::refers_to_scan(entry, bytes);
   if (entry.kind() == fb::PayloadKind::Core) {
     const ChunkRef chunk{entry.kind(), bytes};
     decode_records({&chunk, 1});

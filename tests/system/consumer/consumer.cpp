@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   if (!view) return 1;
   std::printf("%s %u\n", catalog->zones[0].name.c_str(), view->size());
 #ifdef WITH_PACKER
-  if (zonepack::packer::why_unfit_name("L1") != "") return 1;
+  if (zonepack::packer::find_name_problem("L1")) return 1;
 #endif
   return 0;
 }

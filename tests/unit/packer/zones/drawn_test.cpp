@@ -47,15 +47,15 @@ TEST(DrawnZones, RefusesNamesThatAreMissingOrUnfit) {
 }
 
 TEST(DrawnZones, KnowsWhichNamesAreFit) {
-  EXPECT_EQ(why_unfit_name("R11"), "");
-  EXPECT_EQ(why_unfit_name("Chirurgie Süd, 2. OG (links)"), "");
-  EXPECT_EQ(why_unfit_name("手術室"), "");
-  EXPECT_EQ(why_unfit_name(std::string(64, 'x')), "");
+  EXPECT_EQ(find_name_problem("R11"), std::nullopt);
+  EXPECT_EQ(find_name_problem("Chirurgie Süd, 2. OG (links)"), std::nullopt);
+  EXPECT_EQ(find_name_problem("手術室"), std::nullopt);
+  EXPECT_EQ(find_name_problem(std::string(64, 'x')), std::nullopt);
   for (const std::string& name :
        {std::string(65, 'x'), std::string(""), std::string(".."), std::string(" a"),
         std::string("a "), std::string("a\\b"), std::string("a\"b"), std::string("a\nb"),
         std::string("a\0b", 3), std::string("a\x7f"), std::string("a\xC2\x85")}) {
-    EXPECT_NE(why_unfit_name(name), "") << name;
+    EXPECT_NE(find_name_problem(name), std::nullopt) << name;
   }
 }
 
