@@ -2,7 +2,7 @@
 # Tests of whole programs and of the repository itself.
 
 add_test(NAME system/include_arrows
-         COMMAND ${CMAKE_CURRENT_LIST_DIR}/include_arrows_test.sh ${PROJECT_SOURCE_DIR})
+         COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/include_arrows_test.py ${PROJECT_SOURCE_DIR})
 if(TARGET zonepack AND TARGET zoned)
   add_test(NAME system/run
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/run_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
