@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "platform/version/version.hpp"
 #include "runtime/ctl/commands/commands.hpp"
+#include "runtime/protocol/messages.hpp"
 
 namespace {
 
@@ -89,7 +91,7 @@ int main(int argc, char** argv) {
       "Asks and tells a running zoned.\n"
       "Exit codes: 0 done, 1 zoned or the world said no, 2 usage.",
       "zonectl");
-  app.set_version_flag("--version", ZONEPACK_VERSION);
+  app.set_version_flag("--version", version_line("zonectl", {{"protocol", kProtocolVersion, {}}}));
   app.require_subcommand(0, 1);  // so that CLI11 names a word it does not know
   app.callback([&app] {
     if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);

@@ -17,6 +17,7 @@ ARROWS = {
     "platform/sim": "platform platform/base",
     "platform/linux": "platform platform/base",
     "platform/linux/gpiod": "platform",
+    "platform/version": "",
 
     "runtime/pack_format": "platform/base",
     "runtime/pack_format/file": "platform platform/base runtime/pack_format",
@@ -47,10 +48,11 @@ ARROWS = {
     "runtime/replay": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
                       " runtime/recording runtime/run runtime/settings",
     "runtime/calibrate": "platform runtime/odometry runtime/run runtime/settings",
-    "runtime/zoned": "platform runtime/calibrate runtime/live runtime/replay runtime/report",
+    "runtime/zoned": "platform platform/version runtime/calibrate runtime/live runtime/pack_format/file"
+                     " runtime/recording runtime/replay runtime/report",
     "runtime/ctl/commands": "platform runtime/control runtime/odometry runtime/pack_format/file runtime/protocol"
                             " runtime/run runtime/settings",
-    "runtime/ctl": "runtime/ctl/commands",
+    "runtime/ctl": "platform/version runtime/ctl/commands runtime/protocol",
 
     "packer/record": "",
     "packer/sources": "packer/record",
@@ -58,7 +60,8 @@ ARROWS = {
     "packer/zones": "platform/base runtime/pack_format runtime/pack_format/file",
     "packer/encode": "packer/record platform platform/base runtime/pack_format runtime/pack_format/file",
     "packer/decode": "packer/record runtime/pack_format runtime/pack_format/file",
-    "packer/build": "packer/encode packer/sources packer/zones platform platform/base runtime/pack_format/file",
+    "packer/build": "packer/encode packer/sources packer/zones platform platform/base platform/version"
+                    " runtime/pack_format/file",
     "packer/verify": "packer/decode packer/record packer/zones platform platform/base runtime/pack_format"
                      " runtime/pack_format/file",
     "packer/export": "packer/decode packer/record runtime/pack_format",
@@ -67,7 +70,7 @@ ARROWS = {
     "packer/commands": "packer/build packer/console packer/decode packer/export packer/inspect packer/outline"
                        " packer/sources packer/verify packer/zones platform runtime/pack_format"
                        " runtime/pack_format/file runtime/report",
-    "packer": "packer/commands",
+    "packer": "packer/commands platform/version runtime/pack_format/file",
 }
 
 GPIOD = r"gpiod\.h"
