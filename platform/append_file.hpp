@@ -19,7 +19,7 @@ namespace zonepack {
 // thread: each may wait for the storage.
 class AppendFile {
  public:
-  static constexpr std::uint64_t kSettleBytes = 256 * 1024;
+  static constexpr std::uint64_t kSettleBytes = std::uint64_t{256} * 1024;
 
   // A new file, or an old one emptied.
   static Result<AppendFile> create(const std::string& path);

@@ -22,7 +22,7 @@ namespace zonepack {
 // takes a request for one stretch of memory faster than for many pages. Threads: one.
 class ReadQueue {
  public:
-  static constexpr std::size_t kPieceBytes = 256 * 1024;
+  static constexpr std::size_t kPieceBytes = std::size_t{256} * 1024;
   static constexpr std::size_t kPieces = 8;
   static constexpr ByteCount kBytes = kPieceBytes * kPieces;
 

@@ -61,7 +61,8 @@ class Board {
       const std::string name = entry.path().filename();
       if (name.size() > prefix.size() && name.starts_with(prefix) && name[prefix.size()] >= '0' &&
           name[prefix.size()] <= '9') {
-        found.push_back(path + "/" + name);
+        found.push_back(path);
+        found.back().append("/").append(name);
       }
     }
     std::sort(found.begin(), found.end());
