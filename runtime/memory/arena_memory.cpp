@@ -31,8 +31,8 @@ Result<ArenaMemory> ArenaMemory::obtain(ByteCount bytes, const Source& source) {
     }
   }
   // Of no use: let go of it before anything is waited for.
-  kept_memory.close();
-  kept_lock.close();
+  kept_memory = Descriptor();
+  kept_lock = Descriptor();
   const Notifier none;
   const Notifier& manager = source.manager == nullptr ? none : *source.manager;
   for (const char* const name : {kMemoryName, kLockName}) {

@@ -19,7 +19,7 @@ struct Route {
 };
 
 // Portals looked at before a plan is given up: what bounds its time, and its memory to about 1 MiB.
-inline constexpr std::size_t kMostRoutePortals = 16 * 1024;
+inline constexpr std::size_t kMostRoutePortals = std::size_t{16} * 1024;
 
 // The shortest way from zone to zone, straight from the middle of one portal to that of the next
 // (A*, with the distance to the goal's box as what is still to go). Needs no zone to be in memory.
