@@ -73,7 +73,7 @@ class ZoneComparison {
       compare("stored bytes of " + kind, said->stored(), found.stored);
       compare("chunks of " + kind, said->chunks(), found.chunks);
     }
-    for (std::uint8_t kind = 0; kind < pack_.payloads.size(); ++kind) {
+    for (std::uint8_t kind = 0; kind < static_cast<std::uint8_t>(pack_.payloads.size()); ++kind) {
       if (pack_.payloads[kind].chunks == 0) continue;
       if ((seen >> kind & 1) == 0) lies_.push_back("does not list payload " + kind_text(kind));
       if ((manifest_.payload_mask() >> kind & 1) == 0) {
