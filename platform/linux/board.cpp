@@ -61,8 +61,7 @@ class Board {
       const std::string name = entry.path().filename();
       if (name.size() > prefix.size() && name.starts_with(prefix) && name[prefix.size()] >= '0' &&
           name[prefix.size()] <= '9') {
-        found.push_back(path);
-        found.back().append("/").append(name);
+        found.push_back(path + "/" + name);
       }
     }
     std::sort(found.begin(), found.end());

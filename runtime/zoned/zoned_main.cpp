@@ -155,6 +155,8 @@ void add_calibrate(CLI::App& app, zonepack::CalibrateArguments& arguments, int& 
 
 }  // namespace
 
+// An exception that comes here is a bug: it stops the process.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
   CLI::App app(
       "Keeps the rooms around a robot in memory, within a byte budget.\n"
