@@ -16,6 +16,8 @@
 #include "platform/version/version.hpp"
 #include "runtime/pack_format/file/pack_file.hpp"
 
+// An exception that comes here is a bug: it stops the process.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
   CLI::App app(
       "Packs SLAM maps into zones that a robot can keep within a byte budget.\n"
