@@ -139,25 +139,23 @@ skipped() {  # PRESET
 }
 
 # Copies the output of ninja or ctest into LOG and shows how far it is: a count that runs on a terminal, a line at every
-# tenth elsewhere. What neither counts nor begins a test is shown as it is.
+# tenth elsewhere. Of the other lines those are shown that do not begin a test or list one as skipped.
 counted() {  # LOG
-  local line done_of tenth=0
+  local line over='' tenth=0
+  if [ -t 1 ]; then over=$'\r\e[K'; fi
   : >"$1"
   while IFS= read -r line; do
     printf '%s\n' "$line" >>"$1"
-    if [[ $line =~ ^\ *\[?([0-9]+)/([0-9]+)\]?\  ]]; then
-      done_of="${BASH_REMATCH[1]} of ${BASH_REMATCH[2]}"
-      if [[ $line == *'***Failed'* || $line == *'***Timeout'* || $line == *'***Exception'* || $line == *'(Failed)'* ]]; then
-        printf '%s\n' "$line"
-      elif [ -t 1 ]; then
-        printf '\r   %s\e[K' "$done_of"
+    if [[ ! $line =~ \*\*\*(Failed|Timeout|Exception) && $line =~ ^\ *\[?([0-9]+)/([0-9]+)\]?\  ]]; then
+      if [ -n "$over" ]; then
+        printf '%s   %s of %s' "$over" "${BASH_REMATCH[@]:1:2}"
       elif ((BASH_REMATCH[1] * 10 / BASH_REMATCH[2] > tenth)); then
         tenth=$((BASH_REMATCH[1] * 10 / BASH_REMATCH[2]))
-        printf '   %s\n' "$done_of"
+        printf '   %s of %s\n' "${BASH_REMATCH[@]:1:2}"
       fi
-    elif [[ ! $line =~ ^\ *Start\ +[0-9]+: && -n $line ]]; then
-      printf '%s\n' "$line"
+    elif [[ -n $line && ! $line =~ ^\ *Start\ +[0-9]+: && $line != *'(Skipped)' ]]; then
+      printf '%s%s\n' "$over" "$line"
     fi
   done
-  if [ -t 1 ]; then echo; fi
+  if [ -n "$over" ]; then echo; fi
 }
