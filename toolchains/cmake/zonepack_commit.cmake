@@ -8,7 +8,7 @@ function(zonepack_commit target header)
   add_custom_target(${target}_commit BYPRODUCTS ${out}
                     COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DHEADER=${out}
                             -P ${CMAKE_CURRENT_FUNCTION_LIST_FILE}
-                    COMMENT "" VERBATIM)
+                    COMMENT "Looking up the commit" VERBATIM)
   add_dependencies(${target} ${target}_commit)
 endfunction()
 
