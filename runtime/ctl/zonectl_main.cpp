@@ -5,7 +5,9 @@
 #include <functional>
 #include <iostream>
 
+#include "platform/version/version.hpp"
 #include "runtime/ctl/commands/commands.hpp"
+#include "runtime/protocol/messages.hpp"
 
 namespace {
 
@@ -86,12 +88,14 @@ void add_commands(CLI::App& app, Command& command, Words& words) {
 
 }  // namespace
 
+// An exception that comes here is a bug: it stops the process.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
   CLI::App app(
       "Asks and tells a running zoned.\n"
       "Exit codes: 0 done, 1 zoned or the world said no, 2 usage.",
       "zonectl");
-  app.set_version_flag("--version", ZONEPACK_VERSION);
+  app.set_version_flag("--version", version_line("zonectl", {{"protocol", kProtocolVersion, {}}}));
   app.require_subcommand(0, 1);  // so that CLI11 names a word it does not know
   app.callback([&app] {
     if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);

@@ -31,8 +31,8 @@ Result<ArenaMemory> ArenaMemory::obtain(ByteCount bytes, const Source& source) {
     }
   }
   // Unusable: release it before waiting for anything.
-  kept_memory.close();
-  kept_lock.close();
+  kept_memory = Descriptor();
+  kept_lock = Descriptor();
   const Notifier none;
   const Notifier& manager = source.manager == nullptr ? none : *source.manager;
   for (const char* const name : {kMemoryName, kLockName}) {

@@ -13,7 +13,7 @@
 namespace zonepack {
 
 inline constexpr std::uint32_t kProtocolVersion = 1;
-inline constexpr std::size_t kMostMessageBytes = 16 * 1024;  // either way
+inline constexpr std::size_t kMostMessageBytes = std::size_t{16} * 1024;  // either way
 inline constexpr std::uint32_t kMostNearest = 64;
 inline constexpr double kMostNearestRadius_m = 1000;
 inline constexpr std::size_t kMostRouteHint = 64;

@@ -28,7 +28,7 @@ enum class BlockKind : std::uint8_t {
 inline constexpr std::uint8_t kFirstNoteBlock = 128;
 
 inline constexpr std::size_t kBlockHeaderBytes = 20;
-inline constexpr std::size_t kMostBlockBytes = 1024 * 1024;  // decoded
+inline constexpr std::size_t kMostBlockBytes = std::size_t{1024} * 1024;  // decoded
 
 struct RecordingBlockHeader {
   std::uint64_t checksum = 0;  // XXH3 of the header's other bytes and the stored ones

@@ -17,7 +17,7 @@ namespace zonepack {
 // Collects cycles until a block is worth storing.
 class CycleBlockWriter {
  public:
-  static constexpr std::size_t kGoodBytes = 64 * 1024;
+  static constexpr std::size_t kGoodBytes = std::size_t{64} * 1024;
 
   // period_ns: the usual time from cycle to cycle, which is not stored again with each.
   // most_cycle_bytes: of one cycle's records.

@@ -28,7 +28,7 @@ inline constexpr std::size_t kMostRecordedFrames = 4096;
 inline constexpr std::size_t kMostRecordedCorrections = 4096;
 inline constexpr std::size_t kMostRecordedLoads = 1024;
 inline constexpr std::size_t kMostRecordedEdges = 1024;
-inline constexpr std::size_t kMostCycleBytes = 512 * 1024;  // of one cycle's records
+inline constexpr std::size_t kMostCycleBytes = std::size_t{512} * 1024;  // of one cycle's records
 
 // Room for the records of any cycle with at most that many frames, full commands and up to 64
 // corrections, loads and edges.

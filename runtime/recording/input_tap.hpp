@@ -39,7 +39,7 @@ struct TappedCycle {
 class InputTap final : public InputSink {
  public:
   // Some seconds of a busy bus at 1 kHz, half a minute of a quiet one at 100 Hz.
-  static constexpr std::size_t kRingBytes = 512 * 1024;
+  static constexpr std::size_t kRingBytes = std::size_t{512} * 1024;
 
   // most_frames: given to one cycle.
   explicit InputTap(std::uint32_t most_frames, std::size_t ring_bytes = kRingBytes);

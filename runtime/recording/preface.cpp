@@ -24,7 +24,7 @@ enum class Field : std::uint8_t {
   kDbc = 10,
 };
 
-constexpr std::size_t kBlockContent = 512 * 1024;
+constexpr std::size_t kBlockContent = std::size_t{512} * 1024;
 constexpr std::size_t kPrefaceRoom = 1024;
 
 ByteSpan bytes_of(std::string_view text) noexcept { return std::as_bytes(std::span(text)); }

@@ -122,6 +122,7 @@ Message answer_nearest(MessageBuilder& to, std::uint64_t id, ServedMap& map,
       [&](ZoneId zone) { return !ask.resident_only() || map.zones[zone].resident(); }, found);
   if (!complete) return to.fault(id, wire::Fault::Failed, to_string(complete.error().code));
   std::vector<wire::Signature> rows;
+  rows.reserve(found.size());
   for (const NodeStore::Found& entry : found) {
     rows.push_back(signature_row(entry.node, entry.zone, entry.distance_m));
   }

@@ -288,7 +288,7 @@ void RequestHandler::start_dump(const Call& call) {
 std::optional<RequestHandler::Dump> RequestHandler::poll_dump() {
   auto result = dump_.poll();
   if (!result) return std::nullopt;
-  return Dump{dump_client_, dump_request_, std::move(*result)};
+  return Dump{dump_client_, dump_request_, *result};
 }
 
 void RequestHandler::deliver(Session& to, const Dump& dump) {

@@ -288,8 +288,8 @@ void Server::send_poses() {
   for (auto& session : sessions_) {
     if (!wants(session)) continue;
     session->offer(notice);
-    session->next_pose_ns =
-        std::max(session->next_pose_ns + session->pose_period_ns, now_ns_ - kTurn_ms * 1'000'000);
+    session->next_pose_ns = std::max(session->next_pose_ns + session->pose_period_ns,
+                                     now_ns_ - std::int64_t{kTurn_ms} * 1'000'000);
   }
 }
 

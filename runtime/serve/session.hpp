@@ -20,8 +20,8 @@ namespace zonepack {
 // Threads: one, the server's.
 class Session {
  public:
-  static constexpr std::size_t kKernelBytes = 32 * 1024;
-  static constexpr std::size_t kMostWaiting = 32 * 1024;
+  static constexpr std::size_t kKernelBytes = std::size_t{32} * 1024;
+  static constexpr std::size_t kMostWaiting = std::size_t{32} * 1024;
   static constexpr std::uint64_t kMostLost = 4096;
   static constexpr std::int64_t kPatience_ns = 10'000'000'000;
   static constexpr std::int64_t kHelloWithin_ns = 5'000'000'000;

@@ -205,6 +205,7 @@ void check_units(const YamlSection& section, const OdometrySettings& odometry,
     if (std::any_of(keys.begin(), keys.end(), [&](const auto& k) { return k.key == word; }))
       continue;
     std::vector<std::string> known;
+    known.reserve(keys.size());
     for (const SignalKey& key : keys) known.push_back(key.key);
     add("invert", "\"" + word + "\" is no signal of this model" + known_words_text(word, known));
   }

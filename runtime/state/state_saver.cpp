@@ -13,7 +13,7 @@ namespace zonepack {
 namespace {
 
 constexpr std::int64_t kSaverTurn_ns = 50'000'000;
-constexpr std::size_t kStackBytes = 64 * 1024;
+constexpr std::size_t kStackBytes = std::size_t{64} * 1024;
 constexpr double kLessSure = 2;
 
 }  // namespace

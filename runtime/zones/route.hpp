@@ -19,7 +19,7 @@ struct Route {
 };
 
 // Portals examined before planning gives up: bounds its time, and its memory to about 1 MiB.
-inline constexpr std::size_t kMostRoutePortals = 16 * 1024;
+inline constexpr std::size_t kMostRoutePortals = std::size_t{16} * 1024;
 
 // The shortest route between two zones, straight from the middle of one portal to the middle of the
 // next (A*, whose heuristic is the distance to the goal's box). No zone needs to be in memory.
