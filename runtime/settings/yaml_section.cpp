@@ -10,13 +10,13 @@
 namespace zonepack {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   return std::string(1, '"').append(text.substr(0, 60)).append(1, '"');
 }
 
 // The node's content, for a message.
 std::string shown(const YAML::Node& node) {
-  if (node.IsScalar()) return quoted(node.Scalar());
+  if (node.IsScalar()) return in_quotes(node.Scalar());
   if (node.IsSequence()) return "a list";
   if (node.IsMap()) return "a section";
   return "nothing";
