@@ -13,13 +13,19 @@
 #include "packer/commands/prune.hpp"
 #include "packer/commands/report.hpp"
 #include "packer/commands/verify.hpp"
+#include "platform/version/version.hpp"
+#include "runtime/pack_format/file/pack_file.hpp"
 
+// An exception that comes here is a bug: it stops the process.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
   CLI::App app(
       "Packs SLAM maps into zones that a robot can keep within a byte budget.\n"
       "Exit codes: 0 done, 1 the input or the world is bad, 2 usage.",
       "zonepack");
-  app.set_version_flag("--version", ZONEPACK_VERSION);
+  app.set_version_flag(
+      "--version", zonepack::version_line(
+                       "zonepack", {{"pack format", zonepack::kPackMajor, zonepack::kPackMinor}}));
   app.require_subcommand(0, 1);  // so that CLI11 names a word it does not know
   app.callback([&app] {
     if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);

@@ -19,7 +19,7 @@ namespace zonepack {
 // control thread: each call may wait for the storage.
 class AppendFile {
  public:
-  static constexpr std::uint64_t kSettleBytes = 256 * 1024;
+  static constexpr std::uint64_t kSettleBytes = std::uint64_t{256} * 1024;
 
   // Creates the file, or truncates an existing one.
   static Result<AppendFile> create(const std::string& path);

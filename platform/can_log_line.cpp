@@ -87,7 +87,8 @@ bool parse_date(Cursor& in, std::int64_t& seconds) noexcept {
       hour > 23 || minute > 59 || second > 60) {
     return false;
   }
-  seconds = days_from_civil(year, month, day) * 86400 + hour * 3600 + minute * 60 + second;
+  seconds = days_from_civil(year, month, day) * 86400 + std::int64_t{hour} * 3600 +
+            std::int64_t{minute} * 60 + second;
   return true;
 }
 

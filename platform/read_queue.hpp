@@ -23,7 +23,7 @@ namespace zonepack {
 // Threads: one.
 class ReadQueue {
  public:
-  static constexpr std::size_t kPieceBytes = 256 * 1024;
+  static constexpr std::size_t kPieceBytes = std::size_t{256} * 1024;
   static constexpr std::size_t kPieces = 8;
   static constexpr ByteCount kBytes = kPieceBytes * kPieces;
 

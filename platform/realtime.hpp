@@ -11,10 +11,10 @@ namespace zonepack {
 
 // How a thread runs. Errors of the calls below: kIo with errno (EPERM: see `zoned run --check`).
 struct ThreadSettings {
-  const char* name = "";                 // at most 15 characters, as ps and top show it
-  int fifo_priority = 0;                 // SCHED_FIFO 1 to 99; 0: an ordinary thread
-  int cpu = -1;                          // the only processor it runs on; -1: any
-  std::size_t stack_bytes = 256 * 1024;  // present before `body` runs
+  const char* name = "";  // at most 15 characters, as ps and top show it
+  int fifo_priority = 0;  // SCHED_FIFO 1 to 99; 0: an ordinary thread
+  int cpu = -1;           // the only processor it runs on; -1: any
+  std::size_t stack_bytes = std::size_t{256} * 1024;  // present before `body` runs
 };
 
 // A thread with a stack of a chosen size, all of it present from the start.

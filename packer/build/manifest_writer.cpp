@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "platform/base/require.hpp"
+#include "platform/version/version.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -103,7 +104,7 @@ Bytes manifest_bytes(const ManifestContent& content) {
   }
   const auto provenance = fb::CreateProvenance(
       builder, text(builder, content.source_kind), text(builder, content.source_version),
-      builder.CreateString(ZONEPACK_VERSION), static_cast<std::uint32_t>(LZ4_versionNumber()),
+      builder.CreateString(version()), static_cast<std::uint32_t>(LZ4_versionNumber()),
       text(builder, content.options), content.source_feature_count, content.source_bytes,
       text(builder, content.detector));
   const auto lineage = digest(builder, content.lineage);

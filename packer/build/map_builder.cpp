@@ -271,6 +271,7 @@ std::vector<fb::ZoneEdge> MapBuilder::edges() const {
     }
   }
   std::vector<fb::ZoneEdge> edges;
+  edges.reserve(counts.size());
   for (const auto& [pair, links] : counts) edges.emplace_back(pair.first, pair.second, links);
   return edges;
 }

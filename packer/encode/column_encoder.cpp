@@ -93,7 +93,7 @@ std::uint64_t blocks_size(std::span<const std::uint32_t> in_order) {
     const auto block =
         in_order.subspan(begin, std::min<std::size_t>(kBlockRows, in_order.size() - begin));
     const auto [least, most] = std::minmax_element(block.begin(), block.end());
-    size += sizeof(BlockHeader) + 4 * width_of(*most - *least);
+    size += sizeof(BlockHeader) + std::size_t{4} * width_of(*most - *least);
   }
   return size;
 }

@@ -20,7 +20,7 @@ std::optional<std::vector<EncodedColumn>> by_channel(std::span<const std::byte> 
   std::size_t size = 0;
   for (std::uint32_t c = 0; c < channels; ++c) {
     for (std::size_t i = 0; i < count; ++i) {
-      std::memcpy(&values[i], rows.data() + i * row_bytes + c * 4, 4);
+      std::memcpy(&values[i], rows.data() + i * row_bytes + std::size_t{c} * 4, 4);
     }
     const auto field = static_cast<fb::Field>(static_cast<std::uint16_t>(fb::Field::Channel0) + c);
     columns.push_back(encode_values(field, values));

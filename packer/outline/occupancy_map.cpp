@@ -23,7 +23,7 @@ std::int64_t floor_div(std::int64_t a, std::int64_t b) { return (a >= 0 ? a : a 
 // Calls fn(x, y, z) for each cell, base frame.
 template <typename Fn>
 void for_each_cell(const Matrix& cells, Fn&& fn) {
-  const auto channels = static_cast<std::size_t>((cells.type >> 3) + 1);
+  const auto channels = static_cast<std::size_t>(cells.type >> 3) + 1;
   if ((cells.type & 7) != kMatrixFloat32 || channels < 2) return;
   const std::size_t stride = channels * sizeof(float);
   for (std::size_t at = 0; at + stride <= cells.data.size(); at += stride) {

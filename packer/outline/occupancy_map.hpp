@@ -39,6 +39,8 @@ class OccupancyMap {
   using Tile = std::array<std::int16_t, kTile * kTile>;
   struct Index {
     std::int64_t x = 0, y = 0;
+    // clang-tidy takes the 0 that a defaulted <=> compares with for a pointer.
+    // NOLINTNEXTLINE(modernize-use-nullptr)
     friend auto operator<=>(const Index&, const Index&) = default;
   };
 

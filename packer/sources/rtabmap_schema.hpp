@@ -14,6 +14,8 @@ namespace zonepack::packer {
 // The version an RTAB-Map database carries in Admin.version, "0.23.8".
 struct SchemaVersion {
   int major = 0, minor = 0, patch = 0;
+  // clang-tidy takes the 0 that a defaulted <=> compares with for a pointer.
+  // NOLINTNEXTLINE(modernize-use-nullptr)
   friend auto operator<=>(const SchemaVersion&, const SchemaVersion&) = default;
   std::string text() const;
 };

@@ -76,7 +76,7 @@ class ZoneComparison {
       compare("stored bytes of " + kind, said->stored(), found.stored);
       compare("chunks of " + kind, said->chunks(), found.chunks);
     }
-    for (std::uint8_t kind = 0; kind < pack_.payloads.size(); ++kind) {
+    for (std::uint8_t kind = 0; kind < static_cast<std::uint8_t>(pack_.payloads.size()); ++kind) {
       if (pack_.payloads[kind].chunks == 0) continue;
       const std::string name = kind_text(static_cast<fb::PayloadKind>(kind));
       if ((seen >> kind & 1) == 0) contradictions_.push_back("does not list payload " + name);

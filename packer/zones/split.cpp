@@ -161,8 +161,10 @@ class PlanSplitter {
     std::sort(order.begin(), order.end(),
               [&](std::uint32_t a, std::uint32_t b) { return zones()[a].name < zones()[b].name; });
     std::vector<PlannedZone> parts;
+    parts.reserve(order.size());
     for (const std::uint32_t part : order) parts.push_back(zones()[part]);
     std::vector<SignaturePlace> places;
+    places.reserve(indices.size());
     for (const std::size_t i : indices) places.push_back(signatures_[i]);
     const Partition among = partition(parts, places, OrphanPolicy::kNearest);
     for (std::size_t i = 0; i < indices.size(); ++i) {

@@ -39,6 +39,7 @@ std::vector<std::uint32_t> owners(const std::vector<Part>& parts,
   std::vector<PlannedZone> zones(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) zones[i].polygon = parts[i].polygon;
   std::vector<SignaturePlace> places;
+  places.reserve(members.size());
   for (const Anchored& anchored : members) places.push_back(anchored.member->place);
   return partition(zones, places, OrphanPolicy::kNearest).zone_of;
 }

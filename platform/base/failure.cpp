@@ -2,6 +2,7 @@
 #include "platform/base/failure.hpp"
 
 #include <cstring>
+#include <iostream>
 
 namespace zonepack {
 
@@ -14,6 +15,11 @@ std::string reason_text(const Error& error) {
     return std::strerror(static_cast<int>(error.detail));
   }
   return to_string(error.code);
+}
+
+int report_failure(std::string_view program, const Failure& failure) {
+  std::cerr << program << ": " << failure.message << '\n';
+  return exit_code(failure);
 }
 
 int exit_code(const Failure& failure) noexcept { return failure.code == ErrorCode::kUsage ? 2 : 1; }

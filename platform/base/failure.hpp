@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "platform/base/result.hpp"
@@ -40,5 +41,8 @@ std::string reason_text(const Error& error);
 
 // The exit code of a program that fails so: 2 for a wrong command line, else 1.
 int exit_code(const Failure& failure) noexcept;
+
+// Prints "PROGRAM: message" to standard error, and returns the exit code.
+int report_failure(std::string_view program, const Failure& failure);
 
 }  // namespace zonepack

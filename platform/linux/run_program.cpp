@@ -23,6 +23,7 @@ Result<int> wait_for(pid_t child) noexcept {
 Result<int> run_program(const std::vector<std::string>& arguments, int stdin_fd, int stdout_fd) {
   ZP_REQUIRE(!arguments.empty());
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
 

@@ -28,8 +28,8 @@ Result<void> SocketCanKeeper::start() {
     if (link_.load() == CanLink::kAbsent) return ErrorCode::kNotFound;
     if (link_.load() == CanLink::kDown) return {ErrorCode::kIo, ENETDOWN};
   }
-  auto thread =
-      Thread::start({.name = "zoned-can", .stack_bytes = 64 * 1024}, true, [this] { run(); });
+  auto thread = Thread::start({.name = "zoned-can", .stack_bytes = std::size_t{64} * 1024}, true,
+                              [this] { run(); });
   if (!thread) return thread.error();
   thread_ = std::move(thread).value();
   return {};

@@ -33,7 +33,7 @@ FrameBits bits_of(const CanFrame& frame) noexcept {
   return {frame.extended ? 59u : 35u, payload + payload / 4 + checksum};
 }
 
-SimWire::SimWire(SimWireSettings settings, std::vector<CanFrameSource*> nodes)
+SimWire::SimWire(SimWireSettings settings, const std::vector<CanFrameSource*>& nodes)
     : settings_(std::move(settings)) {
   for (CanFrameSource* source : nodes) nodes_.push_back({source, source->next()});
   first_ns_ = INT64_MAX;

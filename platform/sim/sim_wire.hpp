@@ -52,7 +52,7 @@ FrameBits bits_of(const CanFrame& frame) noexcept;
 class SimWire final : public CanFrameSource {
  public:
   // The nodes, at least one, must outlive the wire. Sorts the faults by time.
-  SimWire(SimWireSettings settings, std::vector<CanFrameSource*> nodes);
+  SimWire(SimWireSettings settings, const std::vector<CanFrameSource*>& nodes);
 
   std::optional<CanFrame> next() noexcept override;
   std::uint64_t dropped() const noexcept override;

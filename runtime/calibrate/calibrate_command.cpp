@@ -14,11 +14,6 @@ namespace {
 
 constexpr double kDegree = 180 / kPi;
 
-int fail_calibrate(const std::string& message) {
-  std::cerr << "zoned calibrate: " << message << '\n';
-  return 1;
-}
-
 std::string decimals_text(double value, int decimals) {
   std::array<char, 64> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
@@ -81,14 +76,62 @@ std::string json_of(const Calibration& c) {
          json_of("before", c.before) + ",\n" + json_of("after", c.after) + "\n}\n";
 }
 
+Outcome<Settings> usable_settings(const std::string& config) {
+  LoadedSettings loaded = load_settings(config);
+  if (!loaded.ok()) {
+    std::string all = "settings cannot be used";
+    for (const std::string& fault : loaded.faults) all += "\n  " + fault;
+    return failure(all);
+  }
+  if (!has_sides(loaded.settings.odometry.wheels.model)) {
+    return failure(
+        config +
+        ": odometry.model: wheel scale and track are those of differential-positions and "
+        "wheel-speeds; other models are measured by hand");
+  }
+  return std::move(loaded.settings);
+}
+
+Outcome<void> calibrate_and_report(const CalibrateArguments& arguments) {
+  const auto settings = usable_settings(arguments.config);
+  if (!settings) return settings.error();
+  const OdometrySettings& odometry = settings->odometry;
+  const auto truth = read_truth(arguments.truth);
+  if (!truth) return truth.error();
+  const auto steps = read_wheel_steps(*settings, arguments.can);
+  if (!steps) return steps.error();
+  const auto result = calibrate(*steps, *truth, odometry.wheels);
+  if (!result) {
+    return failure(arguments.can + " with " + arguments.truth + ": " + result.error().message);
+  }
+  const bool json_on_output = arguments.json == "-";
+  (json_on_output ? std::cerr : std::cout)
+      << arguments.can << ": " << decimals_text(result->distance_m, 1) << " m, "
+      << decimals_text(result->turned_rad, 1) << " rad of turning, "
+      << decimals_text(result->seconds, 1) << " s in " << result->windows << " windows\n\n"
+      << table(*result) << '\n'
+      << "left and right wheel: " << decimals_text(result->difference * 100, 3) << " +- "
+      << decimals_text(result->difference_sigma * 100, 3) << " % apart, "
+      << (result->sides_differ ? "over 3 sigma: told apart"
+                               : "less than 3 sigma: taken to be alike")
+      << "\n\nPaste over the same keys of " << arguments.config << ":\n\n"
+      << calibrated_yaml(*result, odometry);
+  if (json_on_output) {
+    std::cout << json_of(*result);
+  } else if (!arguments.json.empty()) {
+    if (const auto written = write_file_atomically(arguments.json, json_of(*result)); !written) {
+      return cannot_write(arguments.json, written.error());
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
-std::optional<std::vector<WheelStep>> read_wheel_steps(const Settings& settings,
-                                                       const std::string& can, std::string& fault) {
+Outcome<std::vector<WheelStep>> read_wheel_steps(const Settings& settings, const std::string& can) {
   CanLogReader log(can, settings.can.interface);
   if (const auto opened = log.open(); !opened) {
-    fault = log.explain(opened.error());
-    return std::nullopt;
+    return failure(log.explain(opened.error()), opened.error().code);
   }
   const WheelOdometrySettings& wheels = settings.odometry.wheels;
   const double half_track = wheels.geometry.track_m * wheels.geometry.slip_factor / 2;
@@ -106,10 +149,9 @@ std::optional<std::vector<WheelStep>> read_wheel_steps(const Settings& settings,
                      forward + turn * half_track, known});
   }
   if (steps.empty()) {
-    fault = can +
-            ": holds none of the frames that odometry reads, or fewer than two; check "
-            "can.interface and the signals of the settings";
-    return std::nullopt;
+    return failure(can +
+                   ": holds none of the frames that odometry reads, or fewer than two; check "
+                   "can.interface and the signals of the settings");
   }
   return steps;
 }
@@ -140,47 +182,9 @@ std::string calibrated_yaml(const Calibration& calibration, const OdometrySettin
 }
 
 int run_calibrate(const CalibrateArguments& arguments) {
-  const LoadedSettings loaded = load_settings(arguments.config);
-  if (!loaded.ok()) {
-    std::string all = "settings cannot be used";
-    for (const std::string& fault : loaded.faults) all += "\n  " + fault;
-    return fail_calibrate(all);
-  }
-  const OdometrySettings& odometry = loaded.settings.odometry;
-  if (!has_sides(odometry.wheels.model)) {
-    return fail_calibrate(
-        arguments.config +
-        ": odometry.model: wheel scale and track are those of differential-positions and "
-        "wheel-speeds; other models are measured by hand");
-  }
-  std::string fault;
-  const auto truth = read_truth(arguments.truth, fault);
-  if (!truth) return fail_calibrate(fault);
-  const auto steps = read_wheel_steps(loaded.settings, arguments.can, fault);
-  if (!steps) return fail_calibrate(fault);
-  const auto result = calibrate(*steps, *truth, odometry.wheels, fault);
-  if (!result) return fail_calibrate(arguments.can + " with " + arguments.truth + ": " + fault);
-
-  const bool json_on_output = arguments.json == "-";
-  (json_on_output ? std::cerr : std::cout)
-      << arguments.can << ": " << decimals_text(result->distance_m, 1) << " m, "
-      << decimals_text(result->turned_rad, 1) << " rad of turning, "
-      << decimals_text(result->seconds, 1) << " s in " << result->windows << " windows\n\n"
-      << table(*result) << '\n'
-      << "left and right wheel: " << decimals_text(result->difference * 100, 3) << " +- "
-      << decimals_text(result->difference_sigma * 100, 3) << " % apart, "
-      << (result->sides_differ ? "over 3 sigma: told apart"
-                               : "less than 3 sigma: taken to be alike")
-      << "\n\nPaste over the same keys of " << arguments.config << ":\n\n"
-      << calibrated_yaml(*result, odometry);
-  if (arguments.json.empty()) return 0;
-  if (json_on_output) {
-    std::cout << json_of(*result);
-    return 0;
-  }
-  if (const auto written = write_file_atomically(arguments.json, json_of(*result)); !written) {
-    return fail_calibrate(arguments.json +
-                          ": cannot be written: " + to_string(written.error().code));
+  if (const auto done = calibrate_and_report(arguments); !done) {
+    std::cerr << "zoned calibrate: " << done.error().message << '\n';
+    return exit_code(done.error());
   }
   return 0;
 }

@@ -9,21 +9,20 @@
 
 namespace zonepack {
 
-// What `zoned calibrate` is told; empty json: not given.
+// The arguments of `zoned calibrate`; json may be empty.
 struct CalibrateArguments {
   std::string config, can, truth, json;
 };
 
 // Reads the log with the settings, estimates wheel scale and track against the truth, and prints
 // the YAML to paste with the errors before and after. Returns the exit code: 0, or 1 when something
-// could not be read or written, or the drive tells too little.
+// could not be read or written, or the drive does not determine them.
 int run_calibrate(const CalibrateArguments& arguments);
 
 // The keys of the section odometry that change, as YAML to paste over the present ones.
 std::string calibrated_yaml(const Calibration& calibration, const OdometrySettings& odometry);
 
-// What the wheels did over a log, by the settings. Nothing when it cannot be read; `fault` tells.
-std::optional<std::vector<WheelStep>> read_wheel_steps(const Settings& settings,
-                                                       const std::string& can, std::string& fault);
+// What the wheels did over the CAN log `can`, as the settings read it; at least one step.
+Outcome<std::vector<WheelStep>> read_wheel_steps(const Settings& settings, const std::string& can);
 
 }  // namespace zonepack

@@ -2,7 +2,9 @@
 #include "runtime/calibrate/calibration.hpp"
 
 #include <cmath>
+#include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "runtime/calibrate/least_squares.hpp"
@@ -63,7 +65,7 @@ std::vector<Window> windows_of(std::span<const WheelStep> steps, const TruthTrac
   return windows;
 }
 
-// Parameters: mean scale, track, and right - left when the sides are told apart.
+// Parameters: mean scale, track, and right - left when the sides are distinguished.
 CalibrationValues values_of(std::span<const double> parameters) {
   const double difference = parameters.size() > 2 ? parameters[2] : 0;
   return {parameters[0] - difference / 2, parameters[0] + difference / 2, parameters[1]};
@@ -137,8 +139,8 @@ CalibrationErrors errors_with(const CalibrationValues& values, const std::vector
   return errors;
 }
 
-std::optional<Calibration> calibrate(const std::vector<WheelStep>& steps, const TruthTrack& truth,
-                                     const WheelOdometrySettings& settings, std::string& fault) {
+Outcome<Calibration> calibrate(const std::vector<WheelStep>& steps, const TruthTrack& truth,
+                               const WheelOdometrySettings& settings) {
   Calibration result;
   const double track_m = settings.geometry.track_m * settings.geometry.slip_factor;
   result.nominal.track_m = track_m;
@@ -151,19 +153,18 @@ std::optional<Calibration> calibrate(const std::vector<WheelStep>& steps, const 
         static_cast<double>(window.steps.back().to_ns - window.steps.front().from_ns) * 1e-9;
   }
   if (result.distance_m < kLeastDistance_m || result.turned_rad < kLeastTurn_rad) {
-    fault = "the drive tells too little: " + metres(result.distance_m) + " m and " +
-            metres(result.turned_rad) + " rad of turning that the truth covers; needed: at least " +
-            metres(kLeastDistance_m) + " m and " + metres(kLeastTurn_rad) +
-            " rad (a full turn), better 100 m with turns both ways, driven slowly";
-    return std::nullopt;
+    return failure("the drive tells too little: " + metres(result.distance_m) + " m and " +
+                   metres(result.turned_rad) +
+                   " rad of turning that the truth covers; needed: at least " +
+                   metres(kLeastDistance_m) + " m and " + metres(kLeastTurn_rad) +
+                   " rad (a full turn), better 100 m with turns both ways, driven slowly");
   }
   const auto common = fit(windows, settings, {1, track_m});
   const auto apart = fit(windows, settings, {1, track_m, 0});
   if (!common || !apart) {
-    fault =
+    return failure(
         "least squares found no answer: scale and track cannot be told apart by this drive; "
-        "drive straight pieces and turns both ways";
-    return std::nullopt;
+        "drive straight pieces and turns both ways");
   }
   result.difference = apart->parameters[2];
   result.difference_sigma = apart->sigmas[2];

@@ -14,7 +14,7 @@ struct LeastSquares {
 };
 
 // The parameters, near those given, at which the residuals' sum of squares is least (Gauss-Newton
-// with differences). Nothing when they cannot be told apart, or no answer is near.
+// with finite differences). Nothing when they cannot be determined, or no solution is near.
 using Residuals = std::function<std::vector<double>(std::span<const double>)>;
 std::optional<LeastSquares> solve_least_squares(std::vector<double> start,
                                                 const Residuals& residuals_of);

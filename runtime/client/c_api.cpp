@@ -5,7 +5,7 @@
 #include "runtime/client/client.hpp"
 #include "runtime/client/zonepack_client.h"
 
-// One of both: a connection, or memory alone.
+// Either a connection or memory alone.
 struct zp_client {
   std::optional<zonepack::Client> connected;
   std::optional<zonepack::SharedReader> alone;
@@ -46,7 +46,7 @@ zp_status status_of(zonepack::Error error) {
   }
 }
 
-void tell(zp_status* out, zp_status status) {
+void set_status(zp_status* out, zp_status status) {
   if (out != nullptr) *out = status;
 }
 
@@ -86,16 +86,16 @@ zp_client* zp_connect(const char* socket_path, const char* program_name, int tim
   auto connected = zonepack::Client::connect(socket_path, program_name, timeout_ms);
   if (!connected) {
     const bool nobody = connected.error().code == ErrorCode::kNotFound;
-    tell(status, nobody ? ZP_NO_SERVER : status_of(connected.error()));
+    set_status(status, nobody ? ZP_NO_SERVER : status_of(connected.error()));
     return nullptr;
   }
-  tell(status, ZP_OK);
+  set_status(status, ZP_OK);
   return new zp_client{std::move(*connected), std::nullopt};
 }
 
 zp_client* zp_open_memory(const void* memory, size_t bytes, zp_status* status) {
   const auto reader = zonepack::SharedReader::open({static_cast<const std::byte*>(memory), bytes});
-  tell(status, status_of(reader.error()));
+  set_status(status, status_of(reader.error()));
   return reader ? new zp_client{std::nullopt, *reader} : nullptr;
 }
 

@@ -25,8 +25,8 @@ struct ZoneInfo {
   std::uint32_t signatures = 0;
 };
 
-// Keeps a zone from being unloaded for others, until released or over; the robot's own zone still
-// may take its room. A read's own check counts, lease or not.
+// Keeps a zone from being unloaded in favour of others until released or expired; the robot's own
+// zone may still take its room. A read is checked all the same, lease or not.
 struct ZoneLease {
   ZoneId zone = kNoZone;
   std::uint32_t generation = 0;
@@ -55,33 +55,33 @@ struct NearSignature {
   float distance_m = 0;
 };
 
-// A program's connection to zoned: the map's memory, read in place, and what is asked for over the
-// socket. config/SETTINGS.md says where the socket is and who may use it.
+// A program's connection to zoned: the map's memory, read in place, and requests over the socket.
+// config/SETTINGS.md says where the socket is and who may use it.
 //
 // Errors: kNotFound (no zoned there, no such zone, zone not loaded), kBusy (no answer in time; try
 // again), kCancelled (zoned is gone: make a new Client), kBadVersion (of another version), kNoRoom,
 // kTooLarge (too many clients or leases), kMismatch (the map changed: look the zone up again), kIo
-// with errno; last_words() is what zoned said to it.
+// with errno; last_words() is what zoned said about it.
 //
 // While a Client exists its memory stays mapped, even if zoned dies, and counts against zoned's
-// limit: let go of a Client whose calls say kCancelled.
+// limit: destroy a Client whose calls return kCancelled.
 //
-// Ownership: owns the connection and the mapping; what read() gives is valid inside fn only.
-// Threads: one at a time. Real-time: read() waits for nobody; all other calls wait for zoned, at
-// most the timeout.
+// Ownership: owns the connection and the mapping; what read() passes to fn is valid only inside fn.
+// Threads: one at a time.
+// Real-time: read() never waits; all other calls wait for zoned, at most the timeout.
 class Client {
  public:
   static Result<Client> connect(const std::string& socket, const std::string& name,
                                 int timeout_ms = 2000);
 
-  // The zones of the map, by number. Asked for again when the map changed.
+  // The zones of the map, by number. Fetched again when the map changed.
   Result<std::span<const ZoneInfo>> zones();
   // kNotFound for a name that the map does not have.
   Result<ZoneId> find_zone(std::string_view name);
 
-  // Calls fn(const ZoneSignatures&) with the zone's signatures where they stand. Only after kOk was
-  // what fn read true; see SharedReader. kAbsent too for a number that was looked up before the map
-  // changed: zones() and find_zone() tell the new one.
+  // Calls fn(const ZoneSignatures&) with the zone's signatures, in place. What fn read is valid
+  // only if this returns kOk; see SharedReader. kAbsent also for a number that was looked up before
+  // the map changed: zones() and find_zone() give the new one.
   template <typename Fn>
   ReadStatus read(ZoneId zone, Fn&& fn) {
     if (zones_epoch_ != 0 && reader_.epoch() != zones_epoch_) return ReadStatus::kAbsent;
@@ -105,7 +105,7 @@ class Client {
                                              std::uint32_t most);
 
   std::string_view last_words() const noexcept { return last_words_; }
-  // For all else that the protocol has (PROTOCOL.md).
+  // For everything else in the protocol (PROTOCOL.md).
   Connection& connection() noexcept { return *connection_; }
 
  private:
@@ -115,12 +115,12 @@ class Client {
   Result<const wire::Reply*> ask(MessageBuilder& message, flatbuffers::Offset<Body> body,
                                  bool about_zones = false);
 
-  std::unique_ptr<Connection> connection_;  // holds the lock that tells of this reader
+  std::unique_ptr<Connection> connection_;  // holds the lock that marks this reader
   SharedMemory memory_;
   SharedReader reader_;
   std::uint32_t map_serial_;
-  std::uint32_t zones_serial_ = 0;  // of zones_; 0: none asked for yet
-  std::uint32_t zones_epoch_ = 0;   // of the map that zone numbers are of; 0: zoned does not tell
+  std::uint32_t zones_serial_ = 0;  // of zones_; 0: not fetched yet
+  std::uint32_t zones_epoch_ = 0;   // of the map that zone numbers belong to; 0: zoned does not say
   std::vector<ZoneInfo> zones_;
   std::string last_words_;
 };

@@ -14,23 +14,25 @@
 namespace zonepack {
 
 enum class ReadStatus : std::uint8_t {
-  kOk,       // everything that fn read belongs together
-  kExpired,  // the zone was unloaded before fn was done: forget what it read; asking again may help
+  kOk,       // everything that fn read is consistent
+  kExpired,  // the zone was unloaded before fn was done: discard what it read; reading again may
+             // help
   kAbsent,   // the zone is not loaded, or there is no such zone
-  kDamaged,  // what is there breaks the format: not written by a sound zoned
+  kDamaged,  // the memory breaks the format: not written by a working zoned
 };
 const char* to_string(ReadStatus status) noexcept;
 
-// Reads zones in place in the memory that zoned shares. It takes nothing from zoned and cannot hold
-// it up: a zone may be unloaded at any moment, and read() tells so afterwards. A lease (client.hpp)
-// makes that unlikely.
+// Reads zones in place in the memory that zoned shares. It takes no lock and cannot hold zoned up:
+// a zone may be unloaded at any moment, which read() reports afterwards. A lease (client.hpp) makes
+// that unlikely.
 //
 // Whatever fn reads after the zone was unloaded is wrong but harmless: offsets and counts were
 // copied before and are bounded to the slot. Ids, poses, links and calibrations are copies and
-// never change. fn must not act on what it reads before read() said kOk.
+// never change. fn must not act on what it reads before read() has returned kOk.
 //
-// Ownership: refers to memory that stays mapped longer.   Threads: one at a time; a reader for each
-// thread costs little. Memory: what a ZoneGrant takes, for at most kMostGrants zones.
+// Ownership: refers to memory that stays mapped longer.
+// Threads: one at a time; a reader for each thread costs little.
+// Memory: what a ZoneGrant takes, for at most kMostGrants zones.
 class SharedReader {
  public:
   static constexpr std::size_t kMostGrants = 16;
@@ -42,12 +44,12 @@ class SharedReader {
   std::uint32_t zone_count() const noexcept { return tables_.zone_count(); }
   bool resident(ZoneId zone) const noexcept { return state_of(zone) != 0; }
 
-  // One more with every start of zoned and every map: zones are numbered anew.
+  // Incremented at every start of zoned and every change of map, when zones are renumbered.
   std::uint32_t epoch() const noexcept { return tables_.epoch(); }
 
   // Calls fn(const ZoneSignatures&) unless the zone is absent. The first read of a zone since it
-  // was loaded looks through it and allocates; later ones do not. What fn is given is valid until
-  // it returns. fn may read other zones.
+  // was loaded scans it and allocates; later ones do not. What fn is given is valid until it
+  // returns. fn may read other zones.
   template <typename Fn>
   ReadStatus read(ZoneId zone, Fn&& fn) {
     std::shared_ptr<const ZoneGrant> grant;
@@ -56,7 +58,7 @@ class SharedReader {
     return still_valid(*grant) ? ReadStatus::kOk : ReadStatus::kExpired;
   }
 
-  // Gives back what was copied of zones.
+  // Frees what was copied from zones.
   void forget_grants() noexcept { grants_.clear(); }
 
  private:

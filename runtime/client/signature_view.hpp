@@ -11,10 +11,13 @@
 #include "runtime/pack_format/ids.hpp"
 #include "runtime/pack_format/zone_view.hpp"
 
-// A loaded zone's signatures as a program reads them. Units: metres, radians, seconds since the
-// epoch of the map's source; frames as FORMAT.md has them (T_map_base takes points of the robot's
-// base to the map). Valid as long as the ZoneView below; an index beyond a size() gives empty
-// values. Threads: immutable. Real-time: nothing allocates.
+// A loaded zone's signatures as a program reads them. Valid as long as the ZoneView below; an index
+// beyond a size() gives empty values.
+//
+// Units: metres, radians, seconds since the epoch of the map's source; frames as FORMAT.md has them
+// (T_map_base takes points of the robot's base to the map).
+// Threads: immutable.
+// Real-time: nothing allocates.
 namespace zonepack {
 
 // Row-major 3x4: rotation and translation.
@@ -33,7 +36,7 @@ struct Feature {
   std::int32_t octave = 0;
   std::int32_t word_id = 0;       // <= 0: not in the source's dictionary
   std::array<float, 3> p_base{};  // NaN where unknown
-  ByteSpan descriptor;            // in place: read it before read() returns
+  ByteSpan descriptor;            // in place: valid until read() returns
 };
 
 enum class DescriptorType : std::uint8_t { kNone, kU8, kF32 };
@@ -44,11 +47,11 @@ class FeaturesView {
 
   std::uint32_t size() const noexcept { return table_ == nullptr ? 0 : table_->total_rows(); }
   DescriptorType descriptor_type() const noexcept;
-  std::uint32_t descriptor_dim() const noexcept;  // elements a descriptor
+  std::uint32_t descriptor_dim() const noexcept;  // elements per descriptor
 
   Feature operator[](std::uint32_t index) const noexcept;
 
-  // Calls fn(const Feature&) for each, in order; faster than one index after the other.
+  // Calls fn(const Feature&) for each, in order; faster than indexing.
   template <typename Fn>
   void for_each(Fn&& fn) const {
     if (table_ == nullptr) return;
@@ -84,7 +87,7 @@ struct ScanView {
 struct GridView {
   float cell_m = 0;
   std::array<float, 3> view_point{};
-  TableRows ground, obstacles, empty;  // cells in the base frame: x, y and, in space, more
+  TableRows ground, obstacles, empty;  // cells in the base frame: x, y and, in 3D, more
 };
 
 class SignatureView {
@@ -122,11 +125,11 @@ class SignatureView {
   }
   std::optional<ScanView> scan() const noexcept;
   std::optional<GridView> grid() const noexcept;
-  // Whatever else there is, by its part: images, depth, user data.
+  // Any other payload, by its part: images, depth, user data.
   TableRows rows(fb::Part part) const noexcept {
     return TableRows(zone_->table(ordinal_, part), zone_->table(ordinal_, fb::Part::Scan));
   }
-  // With parts that a signature has several of; TableView::ordinal() tells which.
+  // All tables, for parts that a signature has several of; TableView::ordinal() says which.
   std::span<const TableView> tables() const noexcept { return zone_->tables(ordinal_); }
 
  private:

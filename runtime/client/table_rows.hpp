@@ -19,7 +19,7 @@ class TableRows {
   using Buffer = std::array<std::byte, kMostChannels * 4>;
 
   TableRows() = default;
-  // `scan`: of the same signature, whose points the rows of a grid may be told as; may be null.
+  // `scan`: of the same signature; the rows of a grid may refer to its points. May be null.
   explicit TableRows(const TableView* table, const TableView* scan = nullptr) noexcept
       : table_(table), scan_(scan) {}
 
@@ -27,7 +27,7 @@ class TableRows {
   std::uint32_t size() const noexcept { return present() ? table_->total_rows() : 0; }
 
   // The element type of the source's matrix as OpenCV numbers them (depth = type & 7, channels =
-  // (type >> 3) + 1), and its rows; 0 where the table is no matrix.
+  // (type >> 3) + 1), and its rows; 0 where the table is not a matrix.
   std::int32_t matrix_type() const noexcept { return static_cast<std::int32_t>(shape() >> 32); }
   std::int32_t matrix_rows() const noexcept { return static_cast<std::int32_t>(shape()); }
 

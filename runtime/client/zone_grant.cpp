@@ -8,8 +8,7 @@
 namespace zonepack {
 namespace {
 
-// An index entry that a chunk is held against: of the entry that the loader checked it with, only
-// the kind is known here.
+// An index entry to check a chunk against: of the loader's own entry, only the kind is known here.
 fb::ChunkEntry entry_for(fb::PayloadKind kind, std::uint32_t first, std::uint32_t last) {
   const std::array<std::uint8_t, 16> digest{};
   return {0, 0, digest, 0, 0, first, last, 0, 0, 0, 0, kind, fb::ChunkCodec::Raw, 0, 0};

@@ -14,11 +14,12 @@
 
 namespace zonepack {
 
-// The tables of the shared memory, whose places were checked once against its size and are not
-// read again.   Threads: any.
+// The tables of the shared memory, whose places were checked once against its size and are not read
+// again.
+// Threads: any.
 class SharedTables {
  public:
-  // kMismatch: not laid out as this version reads it. Memory aligned to 64 that stays mapped.
+  // `memory` is aligned to 64 and stays mapped. kMismatch: not laid out as this version expects.
   static Result<SharedTables> open(std::span<const std::byte> memory);
 
   std::uint32_t zone_capacity() const noexcept { return zone_capacity_; }
@@ -49,15 +50,15 @@ class SharedTables {
 };
 
 // What a reader needs of one load of a zone before it may read in place: every offset, count and
-// core record, copied into memory of its own and checked there. Whatever happens to the slots
-// later, view() reads inside them and inside these copies.
+// core record, copied into private memory and checked there. Whatever happens to the slots later,
+// view() reads inside them and inside these copies.
 //
-// Each chunk is copied once and looked at in the copy only. Costs a pass over the zone's slots, and
+// Each chunk is copied once and examined only in the copy. Costs a pass over the zone's slots, and
 // the memory of its core chunks, records and columns; kept for as long as the zone stays loaded.
 class ZoneGrant {
  public:
-  // `state` is the zone's, not 0. kCancelled: the zone was withdrawn meanwhile. Else what is wrong
-  // with what was published (kBadStructure, kMismatch): it was not written by a sound zoned.
+  // `state` is the zone's, not 0. kCancelled: the zone was withdrawn meanwhile. kBadStructure,
+  // kMismatch: what was published is broken, so no working zoned wrote it.
   static Result<std::unique_ptr<ZoneGrant>> make(const SharedTables& tables, ZoneId zone,
                                                  std::uint64_t state);
   ZoneGrant(const ZoneGrant&) = delete;

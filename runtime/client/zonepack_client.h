@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The map in zoned's memory, for programs in C and what can call C. The same as client.hpp, whose
- * comments tell more.
+/* The map in zoned's memory, for programs in C and languages that can call C. The same as
+ * client.hpp, whose comments say more.
  *
- * Reading: zp_read() calls your function while the zone's signatures are read where they stand.
- * Everything you got there is true only if zp_read() then returns ZP_OK; with ZP_EXPIRED the zone
- * was unloaded meanwhile, and what you read may be anything (never outside your bounds). Pointers
- * handed out are valid until your function returns. An index that is too large gives 0 or nothing.
+ * Reading: zp_read() calls your function, which reads the zone's signatures in place. What it read
+ * is valid only if zp_read() then returns ZP_OK; with ZP_EXPIRED the zone was unloaded meanwhile,
+ * and what it read may be anything (but never outside the bounds). Pointers passed to your function
+ * are valid until it returns. An index that is too large gives 0 or nothing.
  *
- * Threads: one at a time per client. Units: metres, radians, seconds; see FORMAT.md for frames. */
+ * Threads: one at a time per client.
+ * Units: metres, radians, seconds; see FORMAT.md for frames. */
 #ifndef ZONEPACK_CLIENT_H
 #define ZONEPACK_CLIENT_H
 
@@ -23,12 +24,12 @@ typedef struct zp_zone zp_zone;
 
 typedef enum {
   ZP_OK = 0,
-  ZP_EXPIRED = 1,   /* unloaded while it was read: forget what was read; ask again */
+  ZP_EXPIRED = 1,   /* unloaded while it was read: discard what was read; read again */
   ZP_ABSENT = 2,    /* not loaded, or no such zone */
-  ZP_DAMAGED = 3,   /* not written by a sound zoned */
+  ZP_DAMAGED = 3,   /* not written by a working zoned */
   ZP_NO_SERVER = 4, /* no zoned at that socket, or it is gone: close and connect again */
   ZP_BUSY = 5,      /* no answer in time, or cannot be done now: try again */
-  ZP_REFUSED = 6    /* zoned says no: not allowed, no room, another version or map */
+  ZP_REFUSED = 6    /* zoned refuses: not allowed, no room, another version or map */
 } zp_status;
 
 /* ---- the connection ---- */

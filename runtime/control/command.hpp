@@ -18,7 +18,7 @@ struct Command {
     kPin,        // zone: loaded, and not evicted until unpinned
     kUnpin,      // zone
     kFreeze,     // nothing is evicted
-    kUnfreeze,   //
+    kUnfreeze,   // zones are evicted again
     kLease,      // zone: a reader holds it, for at most the lease time
     kRelease,    // lease
     kRouteHint,  // route: the zones that a planned way leads through, in order; empty ends it
@@ -27,8 +27,8 @@ struct Command {
   static constexpr std::size_t kMostRoute = 64;
 
   Kind kind = Kind::kPin;
-  std::uint32_t map = 0;  // number of the map that its zones are of; 0: of the one in use
-  std::uint64_t id = 0;   // comes back in the reply
+  std::uint32_t map = 0;  // number of the map that its zones belong to; 0: the one in use
+  std::uint64_t id = 0;   // repeated in the reply
   ZoneId zone = kNoZone;
   Lease lease;
   std::uint32_t route_length = 0;

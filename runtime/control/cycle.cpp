@@ -10,7 +10,7 @@
 namespace zonepack {
 namespace {
 
-// To the nearest thousandth, by arithmetic that every machine does alike.
+// To the nearest thousandth, by arithmetic that gives the same on every machine.
 std::int32_t thousandths(double value) noexcept {
   constexpr double kMost = 2e9;
   const double scaled = std::clamp(value * 1000, -kMost, kMost);
@@ -201,7 +201,7 @@ CommandReply Cycle::obey(const Command& command, std::int64_t now_ns) noexcept {
       if (exists(command.lease.zone)) memory_.release(command.lease);
       break;
     case Command::Kind::kMapFreed:
-      break;  // MapSwitcher's
+      break;  // for MapSwitcher
     case Command::Kind::kRouteHint:
       route_length_ = 0;
       for (std::size_t i = 0; i < command.route_length && i < route_.size(); ++i) {

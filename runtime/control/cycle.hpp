@@ -43,13 +43,13 @@ struct CycleConfig {
 struct CycleParts {
   const ZoneGraph& graph;
   std::span<const ZoneNeed> needs;  // by ZoneId
-  std::span<const float> load_s;    // by ZoneId: estimated seconds from wish to use
+  std::span<const float> load_s;    // by ZoneId: estimated seconds from request to use
   std::span<const ZoneId> pinned;
   Residency& memory;
   ZoneLoader& loader;
   EventSink& events;
   ZoneDirectory* directory = nullptr;  // where readers find resident zones
-  std::uint32_t map = 1;               // number in the run of the map that all this is of
+  std::uint32_t map = 1;               // number in the run of the map that all this belongs to
 };
 
 // Another map on offer: its number in this run, or why one that was to be offered cannot be used.
@@ -58,8 +58,8 @@ struct MapOffer {
   ErrorCode fault = ErrorCode::kOk;
 };
 
-// All that a cycle decides on, beside the settings and the map; what is recorded. Frames and
-// corrections are stamped on the clock of now_ns, which never falls.
+// All that a cycle decides on besides the settings and the map; this is what is recorded. Frames
+// and corrections are stamped on the clock of now_ns, which never goes back.
 struct CycleInput {
   std::int64_t now_ns = 0;
   std::span<const CanFrame> frames{};
@@ -72,7 +72,7 @@ struct CycleInput {
 
 struct CycleState {
   PoseEstimate pose;
-  std::uint32_t map = 1;  // number in the run of the map that `zone` is of
+  std::uint32_t map = 1;  // number in the run of the map that `zone` belongs to
   ZoneId zone = kNoZone;  // the robot's own, by the tracker
   bool zone_resident = false;
   bool map_ready = false;  // the pose is trusted and the robot's own zone resident
@@ -85,45 +85,47 @@ struct CycleState {
 // One step of control, the same in a replay and on the robot: what arrived since the last step goes
 // through odometry, pose, zone and wanted zones to what is evicted and loaded.
 //
-// Invariant: a function of its inputs only: the settings, the map, and what run() is given, in that
-// order. Not of wall clock, memory addresses or timing.
+// Invariant: decisions depend only on the settings, the map and what run() is given, in that order;
+// never on wall clock, memory addresses or timing.
 // Real-time: run() neither allocates, locks, waits nor throws; its work is bounded by the frames,
-// corrections, commands and edges given, plus the bounds of tracker, preload and keeper.   Threads:
-// one.
+// corrections, commands and edges given, plus the bounds of tracker, preload and keeper.
+// Threads: one.
 class Cycle {
  public:
   static constexpr std::size_t kMostCommands = 16;
 
   Cycle(const CycleConfig& settings, const CycleParts& parts);
 
-  // Where the robot may be, told before the first run(): a guess to start from.
+  // Where the robot may be: a guess to start from. Before the first run().
   void start_at(std::int64_t now_ns, const Pose2& T_map_base) noexcept;
-  // The same, and how sure that is.
+  // The same, with its standard deviations.
   void start_at(std::int64_t now_ns, const Pose2& T_map_base, double sigma_m,
                 double sigma_rad) noexcept;
 
-  // Goes on with the numbers and times of a run: the next run() is its cycle `cycle`, start_ns the
+  // Continues the numbers and times of a run: the next run() is its cycle `cycle`, start_ns the
   // time of its cycle 0. Before the first run().
   void continue_from(std::uint64_t cycle, std::int64_t start_ns) noexcept;
 
   // The first call starts the run.
   const CycleState& run(const CycleInput& input) noexcept;
 
-  // What became of the last run's commands, in their order.
+  // The replies to the commands of the last run(), in their order.
   std::span<const CommandReply> replies() const noexcept { return {replies_.data(), reply_count_}; }
 
   // Records the end of the run.
   void finish() noexcept;
 
-  // Goes on where the cycle of another map stands: pose, odometry, counters and time are its, and
-  // the map is this one's. Real-time: copies, no allocation; both need the same settings. Before
-  // the first run().
+  // Takes over from the cycle of another map: its pose, odometry, counters and time, with this
+  // one's map. Both need the same settings. Before the first run().
+  // Real-time: copies, no allocation.
   void go_on_from(const Cycle& other) noexcept;
 
   ZoneKeeper& keeper() noexcept { return zone_keeper_; }
 
   // Records an event that is not the cycle's own, at its time.
-  void tell(EventKind kind, const char* reason = nullptr) noexcept { emit(kind, kNoZone, reason); }
+  void report(EventKind kind, const char* reason = nullptr) noexcept {
+    emit(kind, kNoZone, reason);
+  }
 
   const CycleState& state() const noexcept { return state_; }
   const WheelOdometryCounters& odometry_counters() const noexcept { return odometry_.counters(); }

@@ -8,7 +8,7 @@
 
 namespace zonepack {
 
-// What happened, in the words of the event log (event_log.hpp tells each event's fields).
+// What happened, in the words of the event log (event_log.hpp lists each event's fields).
 enum class EventKind : std::uint8_t {
   kStart,
   kPoseInitialised,     // the first hypothesis of where the robot is
@@ -28,7 +28,7 @@ enum class EventKind : std::uint8_t {
   kLoadGivenUp,    // it did: no longer charged
   kLoadFailed,     // reason: the error; no longer charged, tried again later if still wanted
   kEvicted,
-  kBlocked,  // a wanted zone does not fit beside what must stay
+  kBlocked,  // a wanted zone does not fit alongside what must stay
   kUnblocked,
   kNotKeepingUp,   // the robot entered a zone that is not resident
   kMapOffered,     // another version of the map is to be taken
@@ -36,8 +36,8 @@ enum class EventKind : std::uint8_t {
   kMapRefused,     // it was not, reason says why: the old one stays
   kDocked,         // the dock's contact closed: the pose is where the dock is, and trusted
   kUndocked,       // it opened
-  kHoldBegun,      // the hold line: nothing is evicted until
-  kHoldEnded,      //
+  kHoldBegun,      // the hold line became active: nothing is evicted
+  kHoldEnded,      // the hold line was released
   kZoneConfirmed,  // a marker was passed: the robot's zone, moved there if it was another
   kMarkerIgnored,  // reason: why what it says is not believed
   kEnd,
@@ -47,12 +47,12 @@ enum class EventKind : std::uint8_t {
 const char* to_string(EventKind kind) noexcept;
 
 // One thing that happened, as plain integers, so that recording it costs the control thread a copy.
-// Fields that an event has no use for keep their defaults.
+// Fields that an event does not use keep their defaults.
 struct Event {
   EventKind kind = EventKind::kStart;
   std::uint64_t cycle = 0;
   std::int64_t t_ns = 0;  // since the start of the run
-  std::uint32_t map = 1;  // number in the run of the map that the zone is of
+  std::uint32_t map = 1;  // number in the run of the map that the zone belongs to
   ZoneId zone = kNoZone;
   std::uint32_t generation = 0;
   std::uint32_t signatures = 0;          // of the zone
@@ -64,15 +64,15 @@ struct Event {
   std::int32_t x_mm = 0, y_mm = 0, yaw_mrad = 0;  // base_link in the map
 };
 
-// Takes events in their order. Real-time: on_event() neither blocks, allocates nor throws on the
-// robot.
+// Receives events in their order.
+// Real-time: on_event() neither blocks, allocates nor throws on the robot.
 class EventSink {
  public:
   virtual ~EventSink() = default;
   virtual void on_event(const Event& event) noexcept = 0;
 };
 
-// Stamps events with the map they are of and the cycle in which they happen.
+// Stamps events with their map and the cycle in which they happen.
 class EventStamper {
  public:
   explicit EventStamper(EventSink& sink, std::uint32_t map = 1) noexcept : sink_(sink), map_(map) {}

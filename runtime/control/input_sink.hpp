@@ -7,8 +7,9 @@
 
 namespace zonepack {
 
-// Is shown what every cycle was given, so that the run can be driven again. Real-time: on_inputs()
-// neither blocks, allocates nor throws.   Threads: called by the control thread.
+// Receives the inputs of every cycle, so that the run can be replayed.
+// Real-time: on_inputs() neither blocks, allocates nor throws.
+// Threads: called by the control thread.
 class InputSink {
  public:
   virtual ~InputSink() = default;

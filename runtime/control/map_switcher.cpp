@@ -10,7 +10,7 @@ namespace zonepack {
 namespace {
 
 constexpr double kNear_m = 3;
-constexpr int kLookAtMost = 256;  // zones, in a cycle, for one to evict
+constexpr int kLookAtMost = 256;  // zones examined in a cycle for one to evict
 
 }  // namespace
 
@@ -33,8 +33,8 @@ const CycleState& MapSwitcher::run(const CycleInput& input) noexcept {
   }
   map_->cycle.run(own);
   if (input.offer.fault != ErrorCode::kOk) {
-    map_->cycle.tell(EventKind::kMapOffered);
-    map_->cycle.tell(EventKind::kMapRefused, to_string(input.offer.fault));
+    map_->cycle.report(EventKind::kMapOffered);
+    map_->cycle.report(EventKind::kMapRefused, to_string(input.offer.fault));
   }
   if (answer != nullptr) {
     take_load(*answer);
@@ -47,7 +47,7 @@ const CycleState& MapSwitcher::run(const CycleInput& input) noexcept {
 }
 
 void MapSwitcher::begin(std::int64_t now_ns) noexcept {
-  map_->cycle.tell(EventKind::kMapOffered);
+  map_->cycle.report(EventKind::kMapOffered);
   if (map_->memory.frozen()) {
     refuse("frozen");
     return;
@@ -67,7 +67,8 @@ void MapSwitcher::begin(std::int64_t now_ns) noexcept {
 void MapSwitcher::make_room() noexcept {
   if (map_->cycle.keeper().loading() || drop_one()) return;
   const ZoneNeed need = zone_ == kNoZone ? ZoneNeed{} : next_->needs[zone_];
-  // Here for the new one's tables and zone, there for the old one's tables beside them.
+  // This budget must hold the new map's tables and zone, the other one the old map's tables as
+  // well.
   const bool room = map_->memory.used_sum().slots + need.slots <= next_->slots &&
                     map_->memory.set_aside(next_->memory.limits().fixed, need.slots) &&
                     next_->memory.set_aside(map_->memory.limits().fixed, need.slots);
@@ -116,7 +117,7 @@ void MapSwitcher::change(const SlotChain& slots) noexcept {
   const auto tables = next_->memory.set_aside(map_->memory.limits().fixed, 0);
   ZP_REQUIRE(tables.ok());
   next_->cycle.go_on_from(map_->cycle);
-  next_->cycle.tell(EventKind::kMapChanged);
+  next_->cycle.report(EventKind::kMapChanged);
   if (zone_ != kNoZone) next_->cycle.keeper().take_over(zone_, slots);
   unused_ = std::exchange(map_, std::exchange(next_, nullptr));
   step_ = Step::kNone;
@@ -126,7 +127,7 @@ void MapSwitcher::refuse(const char* reason) noexcept {
   map_->memory.give_up_set_aside();
   loader_.use(map_->catalog);
   map_->cycle.keeper().hold(false);
-  map_->cycle.tell(EventKind::kMapRefused, reason);
+  map_->cycle.report(EventKind::kMapRefused, reason);
   unused_ = std::exchange(next_, nullptr);
   step_ = Step::kNone;
 }

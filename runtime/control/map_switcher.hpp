@@ -11,8 +11,8 @@
 
 namespace zonepack {
 
-// A map in use, or prepared to be: all of it outlives its use. Prepared by a thread that may take
-// its time; touched by the control thread alone from the offer until it is given back.
+// A map in use, or prepared for use: all of it outlives its use. A slower thread prepares it; from
+// the offer until it is given back only the control thread touches it.
 struct MapInUse {
   const Catalog& catalog;
   const ZoneGraph& graph;
@@ -20,7 +20,7 @@ struct MapInUse {
   Residency& memory;
   Cycle& cycle;                       // of this memory
   std::uint32_t number = 1;           // in the run
-  std::uint32_t slots = kNoSlot - 1;  // that there are, whatever the budget would pay for
+  std::uint32_t slots = kNoSlot - 1;  // that exist, however many the budget allows
 };
 
 // The cycle over the map in use, and the change to another version of it while the robot drives:
@@ -29,13 +29,15 @@ struct MapInUse {
 //      one a cycle; then room for the new map's tables and its zone at the robot's pose is set
 //      aside
 //   2. that zone is loaded from the new map
-//   3. between two cycles, the new map takes the old one's place, pose and odometry going on; room
+//   3. between two cycles, the new map replaces the old one, pose and odometry continue; room
 //      for the old one's tables stays set aside until the command kMapFreed says that they are gone
 //
 // If there is no room, eviction is frozen, or the zone cannot be loaded (within kMostWait_ns), the
 // old map stays, its zones are loaded again, and the event says why. The budget holds throughout.
 //
-// Invariant, real-time, threads: as of Cycle.
+// Invariant: as Cycle.
+// Real-time: as Cycle.
+// Threads: as Cycle.
 class MapSwitcher {
  public:
   static constexpr std::int64_t kMostWait_ns = 30'000'000'000;
@@ -44,15 +46,15 @@ class MapSwitcher {
   MapSwitcher(MapInUse& map, ZoneLoader& loader, ZoneDirectory* directory) noexcept
       : map_(&map), loader_(loader), directory_(directory) {}
 
-  // A cycle. What the loader answers for a map on offer is taken out of `input.loads`. An offer in
-  // the input with a fault is told as an event; one without was made by offer().
+  // Runs one cycle. The loader's results for a map on offer are taken out of `input.loads`. An
+  // offer with a fault in the input becomes an event; one without was made by offer().
   const CycleState& run(const CycleInput& input) noexcept;
 
   // Offers another map; before a run(). False while another is on offer.
   bool offer(MapInUse& next) noexcept;
 
-  // The map that is not used any more: the one before a change, or an offer that was refused; null
-  // when there is none. Told once.
+  // The map that is no longer used: the one before a change, or an offer that was refused; null
+  // when there is none. Each is returned once.
   MapInUse* take_unused() noexcept { return std::exchange(unused_, nullptr); }
 
   MapInUse& map() noexcept { return *map_; }
@@ -77,7 +79,7 @@ class MapSwitcher {
   Step step_ = Step::kNone;
   ZoneId zone_ = kNoZone;  // of the next map, at the robot's pose
   ZoneId kept_ = kNoZone;  // of the map in use: the robot's own when the change began
-  ZoneId looked_at_ = 0;   // zones before this one are evicted, but for kept_
+  ZoneId looked_at_ = 0;   // zones before this one are evicted, except kept_
   std::int64_t begun_ns_ = 0;
 };
 

@@ -20,23 +20,24 @@ struct ZoneKeeperSettings {
   std::int64_t last_retry_ns = 60'000'000'000;
 };
 
-// Sees to it that the wanted zones are in memory: the most urgent first, never more than fits.
+// Keeps the wanted zones in memory: the most urgent first, never more than fits.
 //
 // One load is under way at a time, so that the storage works for the zone needed soonest. A load
-// that nobody wants any more is cancelled; so is one that keeps the robot's own zone waiting. A
+// that is no longer wanted is cancelled; so is one that keeps the robot's own zone waiting. A
 // wanted zone that does not fit takes the room of less urgent ones; if that is not enough, it
-// waits, and blocked() says so. A zone that cannot be loaded costs only itself.
+// waits, and blocked() says so. A zone that cannot be loaded affects no other.
 //
-// Real-time: no allocation after construction; a cycle costs O(kMaxWanted^2 + pins) beside one
-// admission.   Threads: owned by the control thread.
+// Real-time: no allocation after construction; a cycle costs O(kMaxWanted^2 + pins) plus one
+// admission.
+// Threads: owned by the control thread.
 class ZoneKeeper {
  public:
   static constexpr std::size_t kMaxWanted = 16;
-  static constexpr std::size_t kMostPins = 64;  // beside those given at the start
+  static constexpr std::size_t kMostPins = 64;  // besides those given at the start
 
   // needs: of every zone, by ZoneId. The pinned zones must have been accepted by Residency::pin().
-  // directory: told which zones can be read; may be null. References and spans must outlive this
-  // object; `pinned` is copied.
+  // directory: updated with which zones can be read; may be null. References and spans must outlive
+  // this object; `pinned` is copied.
   ZoneKeeper(Residency& memory, ZoneLoader& loader, EventStamper& events,
              std::span<const ZoneNeed> needs, std::span<const ZoneId> pinned,
              ZoneDirectory* directory = nullptr, const ZoneKeeperSettings& settings = {});
@@ -53,15 +54,15 @@ class ZoneKeeper {
   // first is the robot's own zone; those after the first `urgent` are only possible.
   void keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent) noexcept;
 
-  // While held, nothing is loaded or asked to be; a load under way comes to its end.
+  // While held, no load starts; one under way finishes.
   void hold(bool held) noexcept { held_ = held; }
   bool loading() const noexcept { return loading_ != kNoZone; }
 
-  // Evicts a resident zone, whoever wants it; false when it is not resident.
+  // Evicts a resident zone, even a wanted one; false when it is not resident.
   bool drop(ZoneId zone) noexcept;
 
-  // Takes a zone as loaded that another map's keeper had loaded for this one: admits and completes
-  // it. Before the first keep().
+  // Adopts a zone that another map's keeper had loaded for this one: admits and completes it.
+  // Before the first keep().
   void take_over(ZoneId zone, const SlotChain& slots) noexcept;
 
   // A wanted zone did not fit in the last cycle.

@@ -18,8 +18,9 @@ struct LoadRequest {
   std::uint32_t slots = 0;  // to take from the free ones
 };
 
-// What became of a request. Without error the zone is decoded and its slots are the receiver's;
-// with an error (kCancelled: given up on request) the loader has put them back among the free ones.
+// The result of a request. Without an error the zone is decoded and its slots belong to the
+// receiver; with an error (kCancelled: given up on request) the loader has returned them to the
+// free ones.
 struct LoadResult {
   ZoneId zone = kNoZone;
   std::uint32_t generation = 0;
@@ -32,22 +33,21 @@ struct LoadResult {
 // others are charged for them, there are always enough.
 //
 // Real-time: no call blocks, allocates, reads a file or fails; there is room for every message, as
-// at most one load is under way and a slot is in one place only.   Threads: called by the control
-// thread.
+// at most one load is under way and a slot is in one place only.
+// Threads: called by the control thread.
 class ZoneLoader {
  public:
   virtual ~ZoneLoader() = default;
 
   virtual void load(const LoadRequest& request) noexcept = 0;
 
-  // Asks to give up the load under way; its result comes all the same, at the latest one chunk
-  // later.
+  // Asks to give up the load under way; its result still comes, at most one chunk later.
   virtual void cancel() noexcept = 0;
 
-  // Takes the slots of an evicted zone among the free ones.
+  // Adds the slots of an evicted zone to the free ones.
   virtual void take_back(SlotChain slots) noexcept = 0;
 
-  // Loads asked for from here on are of this map; one under way is not.
+  // Loads requested from here on are from this map; one under way is not.
   virtual void use(const Catalog& catalog) noexcept = 0;
 
   // The next result, if one has come.

@@ -2,8 +2,12 @@
 // zonectl: asks and tells a running zoned. Wiring only; the commands live in runtime/ctl.
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <functional>
+#include <iostream>
 
+#include "platform/version/version.hpp"
 #include "runtime/ctl/commands/commands.hpp"
+#include "runtime/protocol/messages.hpp"
 
 namespace {
 
@@ -11,7 +15,7 @@ using namespace zonepack;
 
 // What the command line asked for; run once the socket is known.
 struct Command {
-  std::function<int(const std::string& socket)> run;
+  std::function<Outcome<void>(const std::string& socket)> run;
 };
 
 template <typename Run>
@@ -84,12 +88,14 @@ void add_commands(CLI::App& app, Command& command, Words& words) {
 
 }  // namespace
 
+// An exception that comes here is a bug: it stops the process.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
   CLI::App app(
       "Asks and tells a running zoned.\n"
       "Exit codes: 0 done, 1 zoned or the world said no, 2 usage.",
       "zonectl");
-  app.set_version_flag("--version", ZONEPACK_VERSION);
+  app.set_version_flag("--version", version_line("zonectl", {{"protocol", kProtocolVersion, {}}}));
   app.require_subcommand(0, 1);  // so that CLI11 names a word it does not know
   app.callback([&app] {
     if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
@@ -109,5 +115,8 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   const auto socket = socket_path(arguments);
-  return socket ? command.run(*socket) : 1;
+  const Outcome<void> done = socket ? command.run(*socket) : socket.error();
+  if (done) return 0;
+  std::cerr << "zonectl: " << done.error().message << '\n';
+  return exit_code(done.error());
 }

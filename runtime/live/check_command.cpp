@@ -57,10 +57,12 @@ class Check {
   }
 
   bool settings_and_map() {
-    if (const auto fault = read_run_inputs(arguments_, inputs_)) {
-      refuse("settings and map", *fault);
+    auto inputs = read_run_inputs(arguments_);
+    if (!inputs) {
+      refuse("settings and map", inputs.error().message);
       return false;
     }
+    inputs_ = std::move(*inputs);
     good("settings", arguments_.config);
     good("map",
          inputs_.catalog.folder + ", " + std::to_string(inputs_.catalog.zones.size()) + " zones");
@@ -68,19 +70,21 @@ class Check {
   }
 
   bool budget() {
-    std::string fault;
-    map_ = MapModel::make(inputs_.catalog, map_terms(arguments_, inputs_.settings), fault);
-    if (!map_) {
-      refuse("budget", fault);
+    auto model = MapModel::make(inputs_.catalog, map_terms(arguments_, inputs_.settings));
+    if (!model) {
+      refuse("budget", model.error().message);
       return false;
     }
+    map_ = std::move(*model);
     if (map_->warning) {
       rows_.push_back({Row::Kind::kWeak, "budget", *map_->warning, "see zonepack plan"});
     } else {
       good("budget", std::to_string(map_->limits.budget) + " bytes");
     }
     Residency trial(map_->needs.size(), map_->limits);
-    if (!map_->pin(trial, fault)) refuse("pinned zones", fault);
+    if (const auto pinned = map_->pin(trial); !pinned) {
+      refuse("pinned zones", pinned.error().message);
+    }
     return true;
   }
 
@@ -123,19 +127,17 @@ class Check {
                              : kind == Kind::kScript ? "CAN script"
                                                      : "CAN bus";
     const SpscQueue<LiveNote> notes(1);
-    std::string fault;
     const auto source = LiveSource::open({.choice = arguments_.source,
                                           .settings = inputs_.settings,
                                           .corrections = {},
                                           .period_ns = 1'000'000,
                                           .notes = notes,
-                                          .allow_degraded = false},
-                                         fault);
+                                          .allow_degraded = false});
     if (!source && kind == Kind::kSocketCan) {
-      refuse_privilege(name, fault, "");
+      refuse_privilege(name, source.error().message, "");
     } else if (!source) {
-      refuse(name, fault);
-    } else if (const std::string warning = source->warning(); !warning.empty()) {
+      refuse(name, source.error().message);
+    } else if (const std::string warning = (*source)->warning(); !warning.empty()) {
       rows_.push_back({Row::Kind::kWeak, name, warning, ""});
     } else {
       good(name, arguments_.source.name);
@@ -144,10 +146,8 @@ class Check {
 
   void lines() {
     if (map_) {
-      if (const auto wrong =
-              ZoneMarkers::fault_of(map_->graph, cycle_config(inputs_.settings).markers)) {
-        refuse("zone markers", *wrong);
-      }
+      const auto fit = ZoneMarkers::check(map_->graph, cycle_config(inputs_.settings).markers);
+      if (!fit) refuse("zone markers", fit.error().message);
     }
     for (LineFinding& line : inspect_lines(kernel_gpio(), inputs_.settings.gpio)) {
       if (line.fault.empty()) {

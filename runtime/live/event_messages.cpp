@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/live/event_messages.hpp"
 
-#include <iostream>
 #include <string>
 #include <string_view>
+
+#include "runtime/live/print_line.hpp"
 
 namespace zonepack {
 namespace {
@@ -46,10 +47,9 @@ std::string line_of(const Event& event, const Catalog& catalog) {
 
 }  // namespace
 
-void EventMessages::on_event(const Event& event) noexcept {
-  next_.on_event(event);
-  const std::string line = line_of(event, maps_.map().catalog());
-  if (!line.empty()) std::cerr << "zoned: " + line + "\n";
+void EventMessages::on_event(const Event& event, const MapVersion& map) noexcept {
+  const std::string line = line_of(event, map.catalog());
+  if (!line.empty()) print_line(line);
 }
 
 }  // namespace zonepack

@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "runtime/control/event.hpp"
-#include "runtime/run/map_version.hpp"
+#include "runtime/run/run.hpp"
 
 namespace zonepack {
 
-// Tells people, on standard error, of events that they should do something about: a line each, with
-// what to do. Passes all events on.   Threads: one; not for a control thread.
-class EventMessages final : public EventSink {
+// Prints, on standard error, a line for each event that people should do something about, and says
+// what to do.
+//
+// Threads: the log thread.
+class EventMessages final : public RunObserver {
  public:
-  // Both must outlive this object.
-  EventMessages(const MapFollower& maps, EventSink& next) : maps_(maps), next_(next) {}
-
-  void on_event(const Event& event) noexcept override;
-
- private:
-  const MapFollower& maps_;
-  EventSink& next_;
+  void on_event(const Event& event, const MapVersion& map) noexcept override;
 };
 
 }  // namespace zonepack

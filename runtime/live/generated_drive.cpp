@@ -55,25 +55,28 @@ void write_signal(const CanSignal& signal, double value, CanFrame& frame) noexce
   write_bits(signal.bits, raw_of(signal, value), frame);
 }
 
-std::optional<std::string> GeneratedDrive::fault_of(const WheelOdometrySettings& odometry) {
+Outcome<void> GeneratedDrive::check(const WheelOdometrySettings& odometry) {
   switch (odometry.model) {
     case OdometryModel::kDifferentialPositions:
     case OdometryModel::kWheelSpeeds:
     case OdometryModel::kTwist:
       break;
     default:
-      return "drives are generated for differential-positions, wheel-speeds and twist only; play a "
-             "log instead";
+      return failure(
+          "drives are generated for differential-positions, wheel-speeds and twist only; play a "
+          "log "
+          "instead");
   }
   const auto signals = signals_of(odometry);
   for (const CanSignal& a : signals) {
     for (const CanSignal& b : signals) {
       if (a.id == b.id && a.extended == b.extended && a.levels + b.levels > 0 && &a != &b) {
-        return "drives are not generated for multiplexed signals of one id; play a log instead";
+        return failure(
+            "drives are not generated for multiplexed signals of one id; play a log instead");
       }
     }
   }
-  return std::nullopt;
+  return {};
 }
 
 std::optional<CanFrame> GeneratedDrive::next() noexcept {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "platform/sim/sim_can_bus.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
 
@@ -35,8 +36,8 @@ void write_signal(const CanSignal& signal, double value, CanFrame& frame) noexce
 // every period, and what tells that watched CANopen nodes are alive. The first leg begins at 0.
 class GeneratedDrive final : public CanFrameSource {
  public:
-  // Why the settings' model cannot be generated, or nothing.
-  static std::optional<std::string> fault_of(const WheelOdometrySettings& odometry);
+  // Fails when frames of this model cannot be generated.
+  static Outcome<void> check(const WheelOdometrySettings& odometry);
 
   GeneratedDrive(DriveSettings drive, const WheelOdometrySettings& odometry)
       : drive_(std::move(drive)), odometry_(odometry) {}

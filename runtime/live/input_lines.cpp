@@ -24,8 +24,8 @@ InputLines::InputLines(GpioPort& port, const GpioSettings& gpio, LineBoard& boar
   }
 }
 
-bool InputLines::open(bool allow_degraded, std::string& fault, std::vector<std::string>& warnings) {
-  return open_lines(port_, lines_, allow_degraded, fault, warnings);
+Outcome<std::vector<std::string>> InputLines::open(bool allow_degraded) {
+  return open_lines(port_, lines_, allow_degraded);
 }
 
 Result<void> InputLines::start() {

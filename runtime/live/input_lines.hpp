@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "platform/gpio_line.hpp"
 #include "platform/realtime.hpp"
 #include "platform/spsc_queue.hpp"
@@ -26,7 +27,7 @@ class InputLines {
   ~InputLines() { stop(); }
 
   // As of OutputLines.
-  bool open(bool allow_degraded, std::string& fault, std::vector<std::string>& warnings);
+  Outcome<std::vector<std::string>> open(bool allow_degraded);
   Result<void> start();
   void stop() noexcept;
 

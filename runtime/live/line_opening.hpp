@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "runtime/live/line_requests.hpp"
 #include "runtime/run/line_board.hpp"
 
@@ -24,23 +25,23 @@ Result<void> open_line(GpioPort& port, Line& line) {
   return {};
 }
 
-// allow_degraded: lines that cannot be had become `warnings`; else false at the first, with a
-// complete message in `fault`.
+// Fails at the first line that cannot be opened; with allow_degraded such lines are returned as
+// complete warnings.
 template <typename Line>
-bool open_lines(GpioPort& port, std::vector<Line>& lines, bool allow_degraded, std::string& fault,
-                std::vector<std::string>& warnings) {
+Outcome<std::vector<std::string>> open_lines(GpioPort& port, std::vector<Line>& lines,
+                                             bool allow_degraded) {
+  std::vector<std::string> warnings;
   for (Line& line : lines) {
     const Result<void> opened = open_line(port, line);
     if (opened) continue;
     const std::string wrong =
         line_fault(port, line.request.name, line.request.settings.name, opened.error());
     if (!allow_degraded) {
-      fault = wrong + "; or go on without by --allow-degraded";
-      return false;
+      return failure(wrong + "; or go on without by --allow-degraded", opened.error().code);
     }
     warnings.push_back(wrong);
   }
-  return true;
+  return warnings;
 }
 
 // Whether a line that could not be had, or failed, is open now. Tried at most once a second.

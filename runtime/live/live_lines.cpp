@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <iostream>
 #include <utility>
 #include <vector>
 
 #include "platform/base/last_act.hpp"
+#include "runtime/live/print_line.hpp"
 
 namespace zonepack {
 namespace {
@@ -23,16 +23,19 @@ void make_outputs_safe() noexcept {
 LiveLines::LiveLines(GpioPort& port, const GpioSettings& gpio)
     : outputs(port, gpio, board), inputs(port, gpio, board) {}
 
-bool LiveLines::open(bool allow_degraded, std::string& fault) {
-  std::vector<std::string> warnings;
-  if (!outputs.open(allow_degraded, fault, warnings)) return false;
-  if (!inputs.open(allow_degraded, fault, warnings)) return false;
-  for (const std::string& warning : warnings) {
-    std::cerr << "zoned: warning: " + warning + "; it is tried again every second\n";
+Outcome<void> LiveLines::open(bool allow_degraded) {
+  const auto for_outputs = outputs.open(allow_degraded);
+  if (!for_outputs) return for_outputs.error();
+  const auto for_inputs = inputs.open(allow_degraded);
+  if (!for_inputs) return for_inputs.error();
+  for (const auto* const warnings : {&*for_outputs, &*for_inputs}) {
+    for (const std::string& warning : *warnings) {
+      print_line("warning: " + warning + "; it is tried again every second");
+    }
   }
   outputs_of_the_run.store(&outputs);
   set_last_act(make_outputs_safe);
-  return true;
+  return {};
 }
 
 Result<void> LiveLines::start(std::function<LiveStatus()> status,

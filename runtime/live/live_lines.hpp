@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <functional>
-#include <string>
 
+#include "platform/base/failure.hpp"
 #include "platform/gpio_line.hpp"
 #include "runtime/live/input_lines.hpp"
 #include "runtime/live/output_lines.hpp"
@@ -12,17 +12,19 @@
 
 namespace zonepack {
 
-// All lines of a live run. The outputs go to their safe levels when it stops, when it is destroyed,
-// and when an invariant fails (ZP_REQUIRE); other deaths are --safe-outputs' to mend. One at a
-// time in a process.   Threads: its owner's.
+// All GPIO lines of a live run. The outputs go to their safe levels when it stops, when it is
+// destroyed, and when an invariant fails (ZP_REQUIRE); after other deaths, zoned --safe-outputs
+// sets them. One at a time in a process.
+//
+// Threads: its owner's.
 class LiveLines {
  public:
   LiveLines(GpioPort& port, const GpioSettings& gpio);
   ~LiveLines() { stop(); }
 
-  // False with a complete message in `fault`; what is missing with allow_degraded goes to standard
-  // error.
-  bool open(bool allow_degraded, std::string& fault);
+  // Fails at the first line that cannot be opened; with allow_degraded such lines are warnings on
+  // standard error.
+  Outcome<void> open(bool allow_degraded);
   Result<void> start(std::function<LiveStatus()> status, std::function<LoadEnd()> last_load,
                      std::int64_t period_ns);
   void stop() noexcept;

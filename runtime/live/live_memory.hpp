@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "platform/notify.hpp"
 #include "platform/shared_memory.hpp"
 #include "runtime/memory/arena_memory.hpp"
@@ -26,10 +27,11 @@ class LiveMemory {
     std::vector<HandedFile>* handed = nullptr;
   };
 
-  // Null when it cannot be had, with a complete message in `fault`; a message in `warning` when the
-  // run goes on unserved.
-  static std::unique_ptr<LiveMemory> open(const Choice& choice, std::string& fault,
-                                          std::string& warning);
+  // Never null.
+  static Outcome<std::unique_ptr<LiveMemory>> open(const Choice& choice);
+
+  // Why the run goes on unserved: a complete message, or empty.
+  const std::string& warning() const noexcept { return warning_; }
 
   SharedMap& map() noexcept { return *map_; }
   bool served() const noexcept { return arena_.has_value(); }
@@ -39,12 +41,13 @@ class LiveMemory {
 
  private:
   LiveMemory() = default;
-  bool share(const Choice& choice, std::string& fault);
+  Outcome<void> share(const Choice& choice);
 
   std::optional<ArenaMemory> arena_;
   std::optional<SharedMemory> own_;
   std::optional<SharedMap> map_;
   Descriptor reader_, lock_;
+  std::string warning_;
 };
 
 // Where zoned is to be reached: $ZONED_SOCKET, else as the settings say.

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/live/live_run.hpp"
 
-#include <cstring>
+#include <algorithm>
+#include <utility>
 
+#include "platform/base/require.hpp"
 #include "platform/clock.hpp"
 #include "platform/signals.hpp"
 #include "runtime/live/bus_messages.hpp"
-#include "runtime/live/live_parts.hpp"
+#include "runtime/live/print_line.hpp"
 
 namespace zonepack {
 namespace {
@@ -16,120 +18,184 @@ constexpr std::int64_t kWatch_ns = 20'000'000;
 }  // namespace
 
 LiveRun::LiveRun(RunInputs& inputs, std::shared_ptr<MapVersion> map, LiveMemory& memory,
-                 const Notifier& notifier, const LiveOptions& options)
-    : parts_(std::make_unique<Parts>(inputs, std::move(map), memory, notifier, options)) {}
+                 const Notifier& notifier, LiveOptions options)
+    : files_(inputs),
+      settings_(inputs.settings),
+      memory_(memory),
+      notifier_(notifier),
+      options_(std::move(options)),
+      period_ns_(options_.preface.terms.period_ns),
+      zones_(static_cast<std::uint32_t>(map->model().needs.size())),
+      control_(settings_, map->catalog(), memory.map()),
+      run_({.cycle = cycle_config(settings_),
+            .terms = options_.preface.terms,
+            .truth = inputs.truth ? &*inputs.truth : nullptr,
+            .events = options_.events},
+           std::move(map)),
+      observers_(run_, control_, memory),
+      lines_(kernel_gpio(), settings_.gpio) {}
 
+// After a start that failed half way, threads may still use what is destroyed before them.
 LiveRun::~LiveRun() {
-  if (parts_->loop) parts_->loop->stop();
-  if (parts_->source) parts_->source->stop();
+  control_.stop();
+  inputs_.stop();
+  (void)control_.join();
+  control_.loader.stop();
 }
 
-bool LiveRun::start(std::string& fault) {
-  Parts& p = *parts_;
-  if (!p.options.events.empty()) {
-    if (const auto opened = p.log.write_to(p.options.events); !opened) {
-      fault = p.options.events + ": cannot be written: " + to_string(opened.error().code);
-      return false;
-    }
-  }
-  const auto map = p.first();
-  const auto begun = p.shared.begin_map(static_cast<std::uint32_t>(map->model().needs.size()));
+Outcome<void> LiveRun::start() {
+  const auto begun = memory_.map().begin_map(zones_);
   ZP_REQUIRE(begun.ok());
-  const CycleConfig config = cycle_config(p.inputs.settings);
-  if (const auto wrong = ZoneMarkers::fault_of(map->model().graph, config.markers)) {
-    fault = *wrong;
-    return false;
+  const auto markers =
+      ZoneMarkers::check(run_.accounted_map().model().graph, cycle_config(settings_).markers);
+  if (!markers) return markers;
+  if (auto opened = lines_.open(options_.allow_degraded); !opened) return opened;
+  if (auto opened = run_.open(
+          {.loader = control_.loader, .queue = &observers_.events, .directory = &memory_.map()});
+      !opened) {
+    return opened;
   }
-  if (!p.lines.open(p.options.allow_degraded, fault)) return false;
-  if (!map->prepare(config, p.loader, p.events, &p.shared, fault) || !p.open_source(fault)) {
-    return false;
-  }
-  if (!p.place_at_start(fault) || !p.open_recorder(fault) || !p.open_service(fault)) return false;
-  const bool served = p.zones_memory.served();
-  p.maps.emplace(map->in_use(), p.loader, &p.shared);
-  p.loop = std::make_unique<ControlLoop>(
-      p.control_settings(), ControlPorts{.clock = p.source->clock(),
-                                         .bus = p.bus(),
-                                         .maps = *p.maps,
-                                         .loader = p.loader,
-                                         .notes = p.events,
-                                         .overload = p.overload,
-                                         .logged_corrections = p.source->corrections(),
-                                         .poses = served ? &p.service.poses : nullptr,
-                                         .commands = served ? &p.service.commands : nullptr,
-                                         .replies = served ? &p.service.replies : nullptr,
-                                         .edges = &p.lines.inputs.edges,
-                                         .recorder = p.recording.tap(),
-                                         .status = p.status});
-  if (p.recording.tap() != nullptr) p.recording.tap()->follow(p.loop->last_status().state);
-  p.change.emplace(MapChangePorts{p.inputs.settings, p.terms_of_next, p.shared,
-                                  p.inputs.settings.loading.read, p.loader, p.events, *p.loop,
-                                  p.registry, p.recording, p.service, Parts::tell});
-  return p.start_threads(fault);
+  if (auto opened = open_control(); !opened) return opened;
+  return start_threads();
+}
+
+Outcome<void> LiveRun::open_control() {
+  auto opened = inputs_.open({.choice = options_.source,
+                              .settings = settings_,
+                              .corrections = std::move(files_.corrections),
+                              .period_ns = period_ns_,
+                              .notes = observers_.notes,
+                              .allow_degraded = options_.allow_degraded},
+                             options_.record_can);
+  if (!opened) return opened;
+  if (inputs_.captures()) observers_.log_thread.add_task([this] { inputs_.write(); });
+  if (auto chosen = choose_start(); !chosen) return chosen;
+  opened = observers_.open_recording(options_.recorder, std::exchange(options_.preface, {}),
+                                     settings_.cycle.most_frames);
+  if (!opened) return opened;
+  opened = observers_.open_service(settings_.serve, lines_.board);
+  if (!opened) return opened;
+
+  Service& service = observers_.service;
+  InputTap* const tap = observers_.recording.tap();
+  const bool served = memory_.served();
+  control_.open(control_settings(), {.clock = inputs_.source().clock(),
+                                     .bus = inputs_.bus(),
+                                     .maps = run_.switcher(),
+                                     .loader = control_.loader,
+                                     .notes = observers_.events,
+                                     .overload = control_.overload,
+                                     .logged_corrections = inputs_.source().corrections(),
+                                     .poses = served ? &service.poses : nullptr,
+                                     .commands = served ? &service.commands : nullptr,
+                                     .replies = served ? &service.replies : nullptr,
+                                     .edges = &lines_.inputs.edges,
+                                     .recorder = tap,
+                                     .status = control_.status});
+  if (tap != nullptr) tap->follow(control_.loop().last_status().state);
+  change_.emplace(MapChangePorts{.settings = settings_,
+                                 .shared = memory_.map(),
+                                 .loop = control_.loop(),
+                                 .run = run_,
+                                 .recording = observers_.recording,
+                                 .service = service});
+  return {};
+}
+
+// As chosen, else where the robot was when it stopped, else the first fix.
+Outcome<void> LiveRun::choose_start() {
+  const std::int64_t start_ns = inputs_.source().start_ns();
+  const TruthTrack* const truth = files_.truth ? &*files_.truth : nullptr;
+  auto start = find_start(options_.start, truth, start_ns);
+  if (!start) return start.error();
+  const auto restored =
+      observers_.restore(options_.recorder.state_folder, settings_.pose, start_ns);
+  if (!*start) *start = restored;
+  if (*start) run_.start_at(**start);
+  options_.preface.start = *start;
+  return {};
+}
+
+ControlSettings LiveRun::control_settings() const {
+  ControlSettings settings;
+  settings.wall_period_ns = std::max<std::int64_t>(
+      1, static_cast<std::int64_t>(static_cast<double>(period_ns_) / options_.source.speed + 0.5));
+  settings.may_skip = inputs_.source().robot();
+  settings.judge_deadlines = options_.source.speed == 1;
+  settings.most_frames = settings_.cycle.most_frames;
+  return settings;
+}
+
+Outcome<void> LiveRun::start_threads() {
+  if (auto started = observers_.start(); !started) return started;
+  if (auto started = control_.start(options_.allow_degraded); !started) return started;
+  const auto load_end = [this] {
+    const auto load = control_.loader.last_load();
+    return LoadEnd{load.zone, load.ns};
+  };
+  const auto driving = lines_.start([this] { return control_.status.load(); }, load_end,
+                                    control_settings().wall_period_ns);
+  if (!driving) return privilege_failure("gpio", driving.error());
+  if (auto serving = observers_.serve(notifier_); !serving) return serving;
+  (void)notifier_.ready();
+  return {};
 }
 
 void LiveRun::wait() {
-  if (const std::string warning = parts_->source->warning(); !warning.empty()) {
-    Parts::tell("warning: " + warning);
+  if (const std::string warning = inputs_.source().warning(); !warning.empty()) {
+    print_line("warning: " + warning);
   }
-  BusMessages bus_messages(parts_->source->interface());
-  const bool tells = parts_->options.source.kind != CanSourceChoice::Kind::kLog;
-  while (!parts_->control_ended.load()) {
-    if (tells) {
-      if (const auto told = bus_messages.next(parts_->status.load().bus)) Parts::tell(*told);
+  BusMessages bus_messages(inputs_.source().interface());
+  const bool has_bus = options_.source.kind != CanSourceChoice::Kind::kLog;
+  while (!control_.ended()) {
+    if (has_bus) {
+      if (const auto line = bus_messages.next(control_.status.load().bus)) print_line(*line);
     }
     switch (next_signal(monotonic_ns() + kWatch_ns)) {
       case Signal::kStop:
-        parts_->loop->stop();
+        control_.stop();
         break;
       case Signal::kReload:
-        parts_->change->ask();
+        change_->ask();
         break;
       case Signal::kNone:
         break;
     }
-    parts_->change->turn();
+    change_->turn();
   }
 }
 
-std::optional<RunSummary> LiveRun::finish(std::string& fault) {
-  Parts& p = *parts_;
-  p.control_thread.join();
-  p.lines.stop();
-  (void)p.notifier.stopping();
-  p.service.stop();
-  if (const int error = p.lock_error.load(); error != 0 && !p.options.allow_degraded) {
-    fault = std::string("realtime.lock_memory: ") + std::strerror(error) +
-            "; raise LimitMEMLOCK (ulimit -l) above the budget, or go on by --allow-degraded";
-    return std::nullopt;
+Outcome<RunSummary> LiveRun::finish() {
+  const auto controlled = control_.join();
+  lines_.stop();
+  (void)notifier_.stopping();
+  observers_.stop_serving();
+  if (!controlled) return controlled.error();
+  run_.end();
+  control_.loader.stop();
+  inputs_.stop();
+  observers_.stop();
+  if (const auto closed = inputs_.close(); !closed) return closed.error();
+  auto summary =
+      run_.summarise(control_.loader.bytes_loaded(), control_.loop().last_status().can_frames);
+  if (!summary) return summary;
+  if (const auto recorded = observers_.recording.finish(summary->event_log_hash); !recorded) {
+    return recorded.error();
   }
-  p.maps->map().cycle.finish();
-  p.loader.stop();
-  p.source->stop();
-  p.log_thread.stop();
-  if (p.state_saver) p.state_saver->stop();
-  if (p.can_recorder) {
-    if (const auto closed = p.can_recorder->close(); !closed) {
-      fault = p.unwritten_recording(closed.error());
-      return std::nullopt;
-    }
-  }
-  auto hash = p.log.finish();
-  if (!hash) {
-    fault = p.options.events + ": cannot be written: " + to_string(hash.error().code);
-    return std::nullopt;
-  }
-  if (const auto problem = p.recording.finish(*hash)) {
-    fault = *problem;
-    return std::nullopt;
-  }
-  RunSummary summary = p.summary();
-  summary.event_log_hash = std::move(hash).value();
+  return with_live_figures(std::move(*summary));
+}
+
+RunSummary LiveRun::with_live_figures(RunSummary summary) const {
+  LiveFigures live = control_.figures();
+  live.process_peak_bytes = process_peak_bytes();
+  const MapModel& map = run_.accounted_map().model();
+  const ByteCount mapped = map.limits.fixed + map.slots * map.limits.slot_bytes;
+  live.overhead_bytes = live.process_peak_bytes - std::min(mapped, live.process_peak_bytes);
+  live.ready_us = timing_us(lines_.outputs.ready_latency());
+  live.ready_count = lines_.outputs.ready_latency().count();
+  live.lines_not_working = lines_.not_working();
+  summary.live = live;
   return summary;
-}
-
-const CanLogSummary* LiveRun::log_summary() const {
-  return parts_->source ? parts_->source->log_summary() : nullptr;
 }
 
 }  // namespace zonepack

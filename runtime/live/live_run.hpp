@@ -6,14 +6,18 @@
 #include <optional>
 #include <string>
 
+#include "platform/base/failure.hpp"
 #include "platform/can_log.hpp"
 #include "platform/notify.hpp"
 #include "runtime/live/can_source.hpp"
+#include "runtime/live/live_control.hpp"
+#include "runtime/live/live_inputs.hpp"
+#include "runtime/live/live_lines.hpp"
 #include "runtime/live/live_memory.hpp"
-#include "runtime/live/run_recording.hpp"
-#include "runtime/run/map_version.hpp"
+#include "runtime/live/live_observers.hpp"
+#include "runtime/live/map_change.hpp"
+#include "runtime/run/run.hpp"
 #include "runtime/run/run_inputs.hpp"
-#include "runtime/run/run_summary.hpp"
 
 namespace zonepack {
 
@@ -23,38 +27,60 @@ struct LiveOptions {
   std::string events;      // file; empty: none
   std::string record_can;  // file; empty: none
   RecorderChoice recorder;
-  RecordingPreface preface;  // but for the start
+  RecordingPreface preface;  // without the start
   bool allow_degraded = false;
 };
 
-// A run of the robot's threads: control, loader, log thread, and what feeds them.
+// A run on the robot's threads:
+//
+//   inputs ──► control ──► loader            frames, corrections, edges; decisions; packs
+//                 │ queues and a status, which control never waits for
+//                 └──► observers             event log, recordings, saved state, service; GPIO
+//                 lines
 //
 // Threads: all calls by the main thread, whose signals must be held (platform/signals.hpp).
 class LiveRun {
  public:
-  // All but map and options must outlive this object. The map goes when another takes its place.
+  // All but map and options must outlive this object. The map goes when another replaces it.
   LiveRun(RunInputs& inputs, std::shared_ptr<MapVersion> map, LiveMemory& memory,
-          const Notifier& notifier, const LiveOptions& options);
+          const Notifier& notifier, LiveOptions options);
   ~LiveRun();
 
-  // Reserves and locks memory and starts the threads. False when something is refused; `fault`
-  // says what in a complete message, and nothing runs.
-  bool start(std::string& fault);
+  // Reserves and locks memory and starts the threads. When something is refused, nothing runs.
+  Outcome<void> start();
 
-  // Until the source ends or a signal asks to stop; one that asks to reload takes another version
-  // of the map.
+  // Until the source ends or a signal asks to stop; one that asks to reload changes to another
+  // version of the map.
   void wait();
 
-  // Ends the threads in order, and says how it went. Once, after start(); nothing with a complete
-  // message in `fault` when results could not be written.
-  std::optional<RunSummary> finish(std::string& fault);
+  // Ends the threads in order, and says how it went. Once, after start(). Fails when results could
+  // not be written.
+  Outcome<RunSummary> finish();
 
   // Of a log that was played: what was wrong with it.
-  const CanLogSummary* log_summary() const;
+  const CanLogSummary* log_summary() const { return inputs_.source().log_summary(); }
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  Outcome<void> choose_start();
+  Outcome<void> open_control();
+  Outcome<void> start_threads();
+  ControlSettings control_settings() const;
+  RunSummary with_live_figures(RunSummary summary) const;
+
+  RunInputs& files_;
+  const Settings& settings_;
+  LiveMemory& memory_;
+  const Notifier& notifier_;
+  LiveOptions options_;
+  const std::int64_t period_ns_;
+  const std::uint32_t zones_;  // of the first map
+
+  LiveControl control_;
+  Run run_;
+  LiveObservers observers_;
+  LiveLines lines_;
+  LiveInputs inputs_;
+  std::optional<MapChange> change_;
 };
 
 }  // namespace zonepack

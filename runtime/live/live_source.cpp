@@ -14,20 +14,22 @@
 namespace zonepack {
 namespace {
 
+Failure not_played(const std::string& name, const Error& error) {
+  return failure(name + ": cannot be played: " + to_string(error.code), error.code);
+}
+
 class LogSource final : public LiveSource {
  public:
   explicit LogSource(LiveSourceTerms& terms)
       : log_(terms.choice.name, terms.settings.can.interface),
         feed_(log_, std::move(terms.corrections), terms.period_ns, terms.notes) {}
 
-  bool start(const std::string& name, std::string& fault) {
+  Outcome<void> start(const std::string& name) {
     if (const auto opened = log_.open(); !opened) {
-      fault = log_.explain(opened.error());
-      return false;
+      return failure(log_.explain(opened.error()), opened.error().code);
     }
-    const auto started = feed_.start();
-    if (!started) fault = name + ": cannot be played: " + to_string(started.error().code);
-    return started.ok();
+    if (const auto started = feed_.start(); !started) return not_played(name, started.error());
+    return {};
   }
 
   RunClock& clock() noexcept override { return feed_; }
@@ -98,32 +100,40 @@ class ScriptSource final : public LiveSource {
   LogFeed feed_;
 };
 
-std::unique_ptr<LiveSource> open_script(LiveSourceTerms& terms, std::string& fault) {
+using OpenedSource = Outcome<std::unique_ptr<LiveSource>>;
+
+OpenedSource open_script(LiveSourceTerms& terms) {
   const LoadedCanScript loaded = load_can_script(terms.choice.name);
-  for (const std::string& wrong : loaded.faults) fault += (fault.empty() ? "" : "\n") + wrong;
-  if (!fault.empty()) return nullptr;
+  std::string faults;
+  for (const std::string& fault : loaded.faults) faults += (faults.empty() ? "" : "\n") + fault;
+  if (!faults.empty()) return failure(std::move(faults));
   auto script = ScriptedBus::make(loaded.script, terms.settings.can.interface,
-                                  cycle_config(terms.settings).odometry, fault);
-  if (!script) return nullptr;
-  auto source = std::make_unique<ScriptSource>(terms, std::move(script));
+                                  cycle_config(terms.settings).odometry);
+  if (!script) return script.error();
+  auto source = std::make_unique<ScriptSource>(terms, std::move(*script));
   if (const auto started = source->start(); !started) {
-    fault = terms.choice.name + ": cannot be played: " + to_string(started.error().code);
-    return nullptr;
+    return not_played(terms.choice.name, started.error());
   }
-  return source;
+  return OpenedSource(std::move(source));
 }
 
-std::unique_ptr<LiveSource> open_bus(const LiveSourceTerms& terms, std::string& fault) {
+OpenedSource open_bus(const LiveSourceTerms& terms) {
   SocketCanSettings settings;
   settings.interface = terms.choice.name;
   settings.ids = odometry_ids(cycle_config(terms.settings).odometry);
   settings.wait_for_interface = terms.allow_degraded;
   auto bus = SocketCanBus::open(settings);
   if (!bus) {
-    fault = explain_socketcan(settings.interface, bus.error());
-    return nullptr;
+    return failure(explain_socketcan(settings.interface, bus.error()), bus.error().code);
   }
-  return std::make_unique<BusSource>(std::move(bus).value(), settings);
+  return OpenedSource(std::make_unique<BusSource>(std::move(bus).value(), settings));
+}
+
+OpenedSource open_log(LiveSourceTerms& terms) {
+  const std::string name = terms.choice.name;
+  auto log = std::make_unique<LogSource>(terms);
+  if (const auto started = log->start(name); !started) return started.error();
+  return OpenedSource(std::move(log));
 }
 
 }  // namespace
@@ -140,13 +150,16 @@ std::vector<CanId> odometry_ids(const WheelOdometrySettings& odometry) {
   return ids;
 }
 
-std::unique_ptr<LiveSource> LiveSource::open(LiveSourceTerms terms, std::string& fault) {
-  if (terms.choice.kind == CanSourceChoice::Kind::kSocketCan) return open_bus(terms, fault);
-  if (terms.choice.kind == CanSourceChoice::Kind::kScript) return open_script(terms, fault);
-  const std::string name = terms.choice.name;
-  auto log = std::make_unique<LogSource>(terms);
-  if (!log->start(name, fault)) return nullptr;
-  return log;
+Outcome<std::unique_ptr<LiveSource>> LiveSource::open(LiveSourceTerms terms) {
+  switch (terms.choice.kind) {
+    case CanSourceChoice::Kind::kSocketCan:
+      return open_bus(terms);
+    case CanSourceChoice::Kind::kScript:
+      return open_script(terms);
+    case CanSourceChoice::Kind::kLog:
+      break;
+  }
+  return open_log(terms);
 }
 
 }  // namespace zonepack

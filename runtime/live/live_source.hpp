@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "platform/can_bus.hpp"
 #include "platform/can_log.hpp"
 #include "runtime/live/can_source.hpp"
@@ -30,8 +31,7 @@ class LiveSource {
  public:
   virtual ~LiveSource() = default;
 
-  // Nothing with a complete message in `fault` when it cannot be had.
-  static std::unique_ptr<LiveSource> open(LiveSourceTerms terms, std::string& fault);
+  static Outcome<std::unique_ptr<LiveSource>> open(LiveSourceTerms terms);
 
   virtual RunClock& clock() noexcept = 0;
   virtual CanBus& bus() noexcept = 0;

@@ -36,11 +36,9 @@ void LogThread::drain() {
   LiveNote note;
   for (std::size_t left = notes_.capacity(); left > 0 && notes_.pop(note); --left) {
     if (note.kind == LiveNote::Kind::kEvent) {
-      maps_.follow(note.event.map);
-      recorder_.on_event(note.event);
+      run_.on_event(note.event);
     } else {
-      maps_.follow(note.cycle.state.map);
-      recorder_.after_cycle(note.cycle);
+      run_.after_cycle(note.cycle);
     }
   }
 }

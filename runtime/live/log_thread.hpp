@@ -8,21 +8,19 @@
 #include "platform/realtime.hpp"
 #include "platform/spsc_queue.hpp"
 #include "runtime/live/live_notes.hpp"
-#include "runtime/run/map_version.hpp"
-#include "runtime/run/run_statistics.hpp"
+#include "runtime/run/run.hpp"
 
 namespace zonepack {
 
 // The thread that does what may take its time: it keeps the account of the run, writes events, and
-// does what others give it to do regularly (recordings, saved state), so that neither the control
-// thread nor the server waits for a disk.
+// carries out regular tasks of others (recordings), so that neither the control thread nor the
+// server waits for a disk.
 //
-// Threads: the recorder, and all tasks, are the log thread's between start() and stop().
+// Threads: the run's account and all tasks belong to the log thread between start() and stop().
 class LogThread {
  public:
-  // maps: is told of each note's before the recorder gets it. All outlive this object.
-  LogThread(SpscQueue<LiveNote>& notes, MapFollower& maps, RunStatistics& recorder)
-      : notes_(notes), maps_(maps), recorder_(recorder) {}
+  // Both must outlive this object.
+  LogThread(SpscQueue<LiveNote>& notes, Run& run) : notes_(notes), run_(run) {}
   ~LogThread() { stop(); }
 
   // A task is called every few milliseconds, and once more while stopping. Before start().
@@ -37,8 +35,7 @@ class LogThread {
   void drain();
 
   SpscQueue<LiveNote>& notes_;
-  MapFollower& maps_;
-  RunStatistics& recorder_;
+  Run& run_;
   std::vector<std::function<void()>> tasks_;
   std::atomic<bool> stop_{false};
   Thread thread_;

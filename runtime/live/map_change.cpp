@@ -2,13 +2,12 @@
 #include "runtime/live/map_change.hpp"
 
 #include <utility>
-#include <vector>
 
 #include "platform/realtime.hpp"
 #include "platform/storage.hpp"
+#include "runtime/live/print_line.hpp"
 #include "runtime/map/next_version.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
-#include "runtime/run/run_inputs.hpp"
 
 namespace zonepack {
 
@@ -20,7 +19,7 @@ void MapChange::turn() {
     case Step::kPreparing:
       if (const auto prepared = job_.poll()) end_preparing(*prepared);
       return;
-    case Step::kTelling:
+    case Step::kAnnouncing:
       if (ports_.service.ready_for(next_) && ports_.loop.offer(next_->in_use())) {
         step_ = Step::kOffered;
       }
@@ -36,61 +35,66 @@ void MapChange::turn() {
 }
 
 void MapChange::begin() {
-  const auto in_use = ports_.maps.find(in_use_);
+  const auto in_use = ports_.run.find(in_use_);
   const auto started = job_.start([this, in_use] { return prepare(*in_use); });
   if (started) {
     step_ = Step::kPreparing;
   } else {
-    ports_.tell("the map is not changed: no thread can be had to read it");
+    print_line("the map is not changed: no thread can be had to read it");
     ports_.loop.offer_refused(started.error().code);
   }
 }
 
 // In a thread of its own.
 Result<std::uint64_t> MapChange::prepare(const MapVersion& in_use) {
+  auto next = make_next(in_use);
+  if (!next) {
+    failure_ = next.error().message;
+    return next.error().code;
+  }
+  // What the control thread is going to touch; where this is refused, the start said so.
+  if (ports_.settings.realtime.lock_memory) (void)lock_memory_now();
+  next_ = std::move(*next);
+  return std::uint64_t{next_->model().needs.size()};
+}
+
+Outcome<std::shared_ptr<MapVersion>> MapChange::make_next(const MapVersion& in_use) {
   const std::string& folder = in_use.catalog().folder;
   const std::string path = folder + "/" + std::string(kManifestName);
   auto manifest = read_file(path, kMaxManifestFileBytes, ReadMode::kBuffered);
   auto catalog = manifest ? Catalog::read(*manifest, folder, in_use.catalog().payload)
                           : Result<Catalog>(manifest.error());
   if (!catalog) {
-    fault_ = path + ": " + to_string(catalog.error().code) + " (" +
-             std::to_string(catalog.error().detail) +
-             "), expected a manifest as zonepack build writes it; copy it again, as the last file";
-    return catalog.error();
+    const Error& error = catalog.error();
+    return failure(
+        path + ": " + to_string(error.code) + " (" + std::to_string(error.detail) +
+            "), expected a manifest as zonepack build writes it; copy it again, as the last file",
+        error.code);
   }
-  if (const auto checked = check_next_version(in_use.catalog(), *catalog, ports_.read, fault_);
-      !checked) {
-    return checked.error();
-  }
+  const auto checked = check_next_version(in_use.catalog(), *catalog, ports_.settings.loading.read);
+  if (!checked) return checked.error();
   const std::size_t zones = catalog->zones.size();
   if (zones > ports_.shared.zone_capacity()) {
-    fault_ = path + ": has " + std::to_string(zones) + " zones, over the " +
-             std::to_string(ports_.shared.zone_capacity()) +
-             " that there is room for since zoned was started; start it again with this map";
-    return {ErrorCode::kTooLarge, static_cast<std::int64_t>(zones)};
+    return failure(path + ": has " + std::to_string(zones) + " zones, over the " +
+                       std::to_string(ports_.shared.zone_capacity()) +
+                       " that there is room for since zoned was started; start it again with this "
+                       "map",
+                   ErrorCode::kTooLarge);
   }
-  auto map = MapVersion::make(last_number_ + 1, std::move(catalog).value(), ports_.terms, fault_);
-  if (map == nullptr || !map->prepare(cycle_config(ports_.settings), ports_.loader, ports_.events,
-                                      &ports_.shared, fault_)) {
-    fault_.insert(0, path + ": ");
-    return ErrorCode::kNoRoom;
-  }
-  ports_.recording.add_map({map->number(), folder, std::move(manifest).value()});
-  // What the control thread is going to touch; where this is refused, the start said so.
-  if (ports_.settings.realtime.lock_memory) (void)lock_memory_now();
-  next_ = std::move(map);
-  return std::uint64_t{zones};
+  auto map = ports_.run.prepare(last_number_ + 1, std::move(catalog).value());
+  if (!map) return failure(path + ": " + map.error().message, ErrorCode::kNoRoom);
+  ports_.recording.add_map({(*map)->number(), folder, std::move(manifest).value()});
+  return map;
 }
 
 void MapChange::end_preparing(const Result<std::uint64_t>& prepared) {
   if (prepared) {
     last_number_ = next_->number();
-    ports_.maps.add(next_);
-    step_ = Step::kTelling;
+    ports_.run.add(next_);
+    step_ = Step::kAnnouncing;
     return;
   }
-  ports_.tell("the map is not changed: " + std::exchange(fault_, {}));
+  print_line("the map is not changed: " + std::exchange(failure_, {}));
   if (prepared.error().code != ErrorCode::kExists) {
     ports_.loop.offer_refused(prepared.error().code);
   }
@@ -103,7 +107,7 @@ void MapChange::take_unused() {
   leaving_ = unused->number;
   if (leaving_ == in_use_) in_use_ = next_->number();
   next_.reset();
-  leaving_map_ = ports_.maps.remove(leaving_);
+  leaving_map_ = ports_.run.remove(leaving_);
   step_ = Step::kFreeing;
 }
 

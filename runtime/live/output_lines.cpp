@@ -33,11 +33,11 @@ OutputLines::OutputLines(GpioPort& port, const GpioSettings& gpio, LineBoard& bo
   }
 }
 
-bool OutputLines::open(bool allow_degraded, std::string& fault,
-                       std::vector<std::string>& warnings) {
-  if (!open_lines(port_, lines_, allow_degraded, fault, warnings)) return false;
+Outcome<std::vector<std::string>> OutputLines::open(bool allow_degraded) {
+  auto warnings = open_lines(port_, lines_, allow_degraded);
+  if (!warnings) return warnings;
   for (Line& line : lines_) begin(line);
-  return true;
+  return warnings;
 }
 
 void OutputLines::set_period(std::int64_t period_ns) noexcept {

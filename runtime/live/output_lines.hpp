@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "platform/gpio_line.hpp"
 #include "platform/realtime.hpp"
 #include "runtime/live/histogram.hpp"
@@ -35,9 +36,9 @@ class OutputLines {
   OutputLines(GpioPort& port, const GpioSettings& gpio, LineBoard& board);
   ~OutputLines() { stop(); }
 
-  // Opens the lines at their safe levels. allow_degraded: those that cannot be had become
-  // `warnings`, and are tried again every second; else false, with a complete message in `fault`.
-  bool open(bool allow_degraded, std::string& fault, std::vector<std::string>& warnings);
+  // Opens the lines at their safe levels. Fails at the first that cannot be opened; with
+  // allow_degraded such lines are returned as complete warnings and tried again every second.
+  Outcome<std::vector<std::string>> open(bool allow_degraded);
 
   struct Sources {
     std::function<LiveStatus()> status;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/live/run_recording.hpp"
 
-#include <cstring>
-
 #include "platform/clock.hpp"
 
 namespace zonepack {
@@ -10,25 +8,18 @@ namespace {
 
 constexpr const char* kWithoutNames = "/var/tmp";
 
-std::string reason(const Error& error) {
-  return error.code == ErrorCode::kIo ? std::strerror(static_cast<int>(error.detail))
-                                      : to_string(error.code);
-}
-
 }  // namespace
 
-bool RunRecording::open(const RecorderChoice& choice, const RecordingPreface& preface,
-                        std::size_t zones, std::uint32_t most_frames, std::string& fault,
-                        std::vector<std::string>& warnings) {
+Outcome<std::string> RunRecording::open(const RecorderChoice& choice,
+                                        const RecordingPreface& preface, std::size_t zones,
+                                        std::uint32_t most_frames) {
   if (!choice.file.empty()) {
     auto file = RecordingFile::create(choice.file, preface);
-    if (!file) {
-      fault = choice.file + ": cannot be written: " + reason(file.error());
-      return false;
-    }
+    if (!file) return cannot_write(choice.file, file.error());
     path_ = choice.file;
     file_ = std::move(file).value();
   }
+  std::string warning;
   if (choice.flight_bytes > 0) {
     const bool named = !choice.state_folder.empty();
     const std::string folder = named ? choice.state_folder + "/flight" : kWithoutNames;
@@ -36,40 +27,47 @@ bool RunRecording::open(const RecorderChoice& choice, const RecordingPreface& pr
     if (flight) {
       flight_ = std::move(flight).value();
     } else {
-      warnings.push_back(folder + ": no flight recorder: " + reason(flight.error()) +
-                         "; set state.folder to a folder that can be written, or recorder.bytes "
-                         "to 0");
+      warning = folder + ": no flight recorder: " + reason_text(flight.error()) +
+                "; set state.folder to a folder that can be written, or recorder.bytes to 0";
     }
   }
-  if (!file_ && !flight_) return true;
+  if (!file_ && !flight_) return warning;
   tap_ = std::make_unique<InputTap>(most_frames);
   writer_ = std::make_unique<InputWriter>(*tap_, preface.terms.period_ns, zones, file_.get(),
                                           flight_.get());
-  return true;
+  return warning;
 }
 
-void RunRecording::on_event(const Event& event) noexcept {
-  if (writer_) writer_->on_event(event);
-  next_.on_event(event);
+void RunRecording::on_event(const Event& event, const MapVersion& map) noexcept {
+  if (!writer_) return;
+  if (map.number() != map_) {
+    map_ = map.number();
+    writer_->change_map(map_, map.model().needs.size());
+  }
+  writer_->on_event(event);
 }
 
 void RunRecording::drain() {
   if (writer_) writer_->drain(monotonic_ns());
 }
 
-std::optional<std::string> RunRecording::finish(const std::string& event_log_hash) {
-  if (!writer_) return std::nullopt;
+Outcome<void> RunRecording::finish(const std::string& event_log_hash) {
+  if (!writer_) return {};
   writer_->flush();
-  if (!file_) return std::nullopt;
+  if (!file_) return {};
   RecordingEnd end = writer_->end();
   end.event_log_hash = event_log_hash;
+  const auto not_whole = [&](const std::string& why, ErrorCode code) {
+    return failure(path_ + ": the recording is not whole: " + why +
+                       "; what was written before can be replayed",
+                   code);
+  };
   if (const auto done = file_->finish(end); !done) {
-    return path_ + ": the recording is not whole: " + reason(done.error()) +
-           "; what was written before can be replayed";
+    return not_whole(reason_text(done.error()), done.error().code);
   }
-  if (end.lost == 0) return std::nullopt;
-  return path_ + ": the recording is not whole: " + std::to_string(end.lost) +
-         " cycles came faster than they could be written; what was written before can be replayed";
+  if (end.lost == 0) return {};
+  return not_whole(std::to_string(end.lost) + " cycles came faster than they could be written",
+                   ErrorCode::kBusy);
 }
 
 }  // namespace zonepack

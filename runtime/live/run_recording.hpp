@@ -3,15 +3,14 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "platform/base/byte_count.hpp"
-#include "runtime/control/event.hpp"
+#include "platform/base/failure.hpp"
 #include "runtime/recording/input_tap.hpp"
 #include "runtime/recording/input_writer.hpp"
 #include "runtime/recording/preface.hpp"
+#include "runtime/run/run.hpp"
 
 namespace zonepack {
 
@@ -23,22 +22,15 @@ struct RecorderChoice {
 
 // The recordings of a live run: the one that was asked for, and the flight recorder's.
 //
-// Threads: tap() by the control thread; on_event() and drain() by the log thread; flight() by any;
-// the rest while neither runs.
-class RunRecording final : public EventSink {
+// Threads: tap() belongs to the control thread, on_event() and drain() to the log thread; flight()
+// and add_map() are for any; the rest is called while neither runs.
+class RunRecording final : public RunObserver {
  public:
-  // Passes events on to `next`.
-  explicit RunRecording(EventSink& next) : next_(next) {}
+  // Before the threads start. Fails when the file that was asked for cannot be written; a flight
+  // recorder that cannot be opened is a warning, returned as a complete message or empty.
+  Outcome<std::string> open(const RecorderChoice& choice, const RecordingPreface& preface,
+                            std::size_t zones, std::uint32_t most_frames);
 
-  // Before the threads start. False when the file that was asked for cannot be written, with a
-  // complete message in `fault`; a flight recorder that cannot is a warning.
-  bool open(const RecorderChoice& choice, const RecordingPreface& preface, std::size_t zones,
-            std::uint32_t most_frames, std::string& fault, std::vector<std::string>& warnings);
-
-  // The map that events are of from here on. The log thread.
-  void change_map(std::uint32_t number, std::size_t zones) {
-    if (writer_) writer_->change_map(number, zones);
-  }
   // A map that the run is going to be offered. Any thread.
   void add_map(const RecordedMap& map) {
     if (writer_) writer_->add_map(map);
@@ -48,15 +40,15 @@ class RunRecording final : public EventSink {
   InputTap* tap() noexcept { return tap_.get(); }
   FlightRecorder* flight() noexcept { return flight_.get(); }
 
-  void on_event(const Event& event) noexcept override;
+  void on_event(const Event& event, const MapVersion& map) noexcept override;
   void drain();
 
-  // Ends the recording; a complete message when it is not whole.
-  std::optional<std::string> finish(const std::string& event_log_hash);
+  // Ends the recording. Fails when it is not whole.
+  Outcome<void> finish(const std::string& event_log_hash);
 
  private:
-  EventSink& next_;
   std::string path_;
+  std::uint32_t map_ = 1;  // number of the map that events are of
   std::unique_ptr<InputTap> tap_;
   std::unique_ptr<RecordingFile> file_;
   std::unique_ptr<FlightRecorder> flight_;

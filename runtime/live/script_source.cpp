@@ -29,11 +29,11 @@ class Unread final : public CanFrameSource {
 RepeatedLog::RepeatedLog(std::string path, std::string interface, std::uint32_t loops)
     : path_(std::move(path)), interface_(std::move(interface)), turns_left_(loops) {}
 
-std::optional<std::string> RepeatedLog::open() {
+Outcome<void> RepeatedLog::open() {
   log_ = std::make_unique<CanLogReader>(path_, interface_);
   const auto opened = log_->open();
-  if (!opened) return log_->explain(opened.error());
-  return std::nullopt;
+  if (!opened) return failure(log_->explain(opened.error()), opened.error().code);
+  return {};
 }
 
 std::optional<CanFrame> RepeatedLog::next() noexcept {
@@ -41,7 +41,7 @@ std::optional<CanFrame> RepeatedLog::next() noexcept {
   if (!frame && first_ns_ && --turns_left_ > 0) {
     dropped_before_ += log_->dropped();
     shift_ns_ = last_ns_ + kBetweenTurns_ns - *first_ns_;
-    if (!open()) frame = log_->next();
+    if (open()) frame = log_->next();
   }
   if (!frame) return std::nullopt;
   if (!first_ns_) first_ns_ = frame->stamp_ns;
@@ -52,23 +52,18 @@ std::optional<CanFrame> RepeatedLog::next() noexcept {
 
 std::uint64_t RepeatedLog::dropped() const noexcept { return dropped_before_ + log_->dropped(); }
 
-std::unique_ptr<ScriptedBus> ScriptedBus::make(const CanScript& script,
-                                               const std::string& interface,
-                                               const WheelOdometrySettings& odometry,
-                                               std::string& fault) {
+Outcome<std::unique_ptr<ScriptedBus>> ScriptedBus::make(const CanScript& script,
+                                                        const std::string& interface,
+                                                        const WheelOdometrySettings& odometry) {
   std::unique_ptr<CanFrameSource> robot;
   if (script.log.empty()) {
-    if (const auto wrong = GeneratedDrive::fault_of(odometry)) {
-      fault = "drive: " + *wrong;
-      return nullptr;
+    if (const auto possible = GeneratedDrive::check(odometry); !possible) {
+      return failure("drive: " + possible.error().message);
     }
     robot = std::make_unique<GeneratedDrive>(script.drive, odometry);
   } else {
     auto log = std::make_unique<RepeatedLog>(script.log, interface, script.loops);
-    if (const auto wrong = log->open()) {
-      fault = *wrong;
-      return nullptr;
-    }
+    if (const auto opened = log->open(); !opened) return opened.error();
     robot = std::move(log);
   }
   const std::optional<CanFrame> first = robot->next();

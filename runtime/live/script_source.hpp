@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "platform/can_log.hpp"
 #include "platform/sim/sim_wire.hpp"
 #include "runtime/live/can_script.hpp"
@@ -19,8 +20,7 @@ class RepeatedLog final : public CanFrameSource {
  public:
   RepeatedLog(std::string path, std::string interface, std::uint32_t loops);
 
-  // Nothing, or a complete message.
-  std::optional<std::string> open();
+  Outcome<void> open();
   std::optional<CanFrame> next() noexcept override;
   std::uint64_t dropped() const noexcept override;
   const CanLogSummary& summary() const noexcept { return log_->summary(); }  // of this turn
@@ -35,13 +35,12 @@ class RepeatedLog final : public CanFrameSource {
   std::uint64_t dropped_before_ = 0;
 };
 
-// The nodes and the wire of a script, ready to be heard.
+// The nodes and the wire of a script, ready to send.
 class ScriptedBus {
  public:
-  // Nothing with a complete message in `fault`.
-  static std::unique_ptr<ScriptedBus> make(const CanScript& script, const std::string& interface,
-                                           const WheelOdometrySettings& odometry,
-                                           std::string& fault);
+  static Outcome<std::unique_ptr<ScriptedBus>> make(const CanScript& script,
+                                                    const std::string& interface,
+                                                    const WheelOdometrySettings& odometry);
 
   SimWire& wire() noexcept { return *wire_; }
   // Before the first frame is read from the bus, which must hear this wire.

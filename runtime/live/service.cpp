@@ -12,9 +12,9 @@ constexpr std::size_t kStack_bytes = 256 * 1024;
 
 }  // namespace
 
-bool Service::open(const ServeSettings& settings, const Seqlock<LiveStatus>& status,
-                   LiveMemory& memory, std::shared_ptr<const MapVersion> first,
-                   std::function<Result<std::uint64_t>(int fd)> dump, std::string& fault) {
+Outcome<void> Service::open(const ServeSettings& settings, const Seqlock<LiveStatus>& status,
+                            LiveMemory& memory, std::shared_ptr<const MapVersion> first,
+                            std::function<Result<std::uint64_t>(int fd)> dump) {
   SharedMap& map = memory.map();
   const ServerPorts ports{
       .status = status,
@@ -30,9 +30,11 @@ bool Service::open(const ServeSettings& settings, const Seqlock<LiveStatus>& sta
       .dump = std::move(dump),
       .lines = lines};
   served_ = std::move(first);
-  server_ = Server::open(settings, ports, served_->catalog(), served_->model().graph,
-                         served_->model().pinned, fault);
-  return server_ != nullptr;
+  const MapModel& model = served_->model();
+  auto server = Server::open(settings, ports, served_->catalog(), model.graph, model.pinned);
+  if (!server) return server.error();
+  server_ = std::move(*server);
+  return {};
 }
 
 Result<void> Service::start(const Notifier& notifier, std::function<std::uint64_t()> cycles) {

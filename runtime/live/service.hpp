@@ -27,10 +27,10 @@ class Service {
   Service() : events(1024), commands(128), replies(256), poses(64) {}
   ~Service() { stop(); }
 
-  // Starts to listen; false with a complete message in `fault`.
-  bool open(const ServeSettings& settings, const Seqlock<LiveStatus>& status, LiveMemory& memory,
-            std::shared_ptr<const MapVersion> map,
-            std::function<Result<std::uint64_t>(int fd)> dump, std::string& fault);
+  // Starts to listen.
+  Outcome<void> open(const ServeSettings& settings, const Seqlock<LiveStatus>& status,
+                     LiveMemory& memory, std::shared_ptr<const MapVersion> map,
+                     std::function<Result<std::uint64_t>(int fd)> dump);
 
   // A change of map, by one thread that asks until the answer is true. Before the offer: the server
   // knows the map. After it: the server has let go of this one.

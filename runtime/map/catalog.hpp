@@ -33,8 +33,9 @@ struct CatalogPortal {
   Segment2 segment;
 };
 
-// What exists: the zones of a map and what each costs for a payload, read once from the manifest.
-// ZoneIds are places in `zones`, sorted by name. Immutable after open(); may be read by any thread.
+// What exists: the zones of a map and what each costs for a payload, read once from the manifest. A
+// ZoneId is an index into `zones`, which is sorted by name. Immutable after open(); may be read by
+// any thread.
 struct Catalog {
   std::string folder;
   Digest16 lineage{};
@@ -42,20 +43,21 @@ struct Catalog {
   PayloadMask payload = 0;  // what will be loaded
   std::vector<CatalogZone> zones;
   std::vector<CatalogPortal> portals;
-  ByteCount fixed_bytes = 0;  // charged beside slots (accounting.hpp)
+  ByteCount fixed_bytes = 0;  // charged besides slots (accounting.hpp)
 
-  // Reads FOLDER/manifest.zpm and checks it whole. kNotFound, kIo and what check_manifest says.
+  // Reads FOLDER/manifest.zpm and checks all of it. kNotFound, kIo, and the errors of
+  // check_manifest.
   static Result<Catalog> open(const std::string& folder, PayloadMask payload);
   // The same from the manifest's bytes, which must be aligned to 8; the folder may be gone.
   static Result<Catalog> read(ByteSpan manifest, const std::string& folder, PayloadMask payload);
 
-  // As map_costs() says of the manifest.
+  // What map_costs() gives for the manifest.
   MapCosts costs() const;
   SmallestBudget smallest(std::span<const ZoneId> pinned = {}) const {
     return smallest_budget(costs(), pinned);
   }
 
-  // kNoZone for a name that is not there.
+  // kNoZone for an unknown name.
   ZoneId find(std::string_view name) const noexcept;
 };
 

@@ -22,8 +22,8 @@ Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, const PackRead
 Result<ZoneLoad> ZoneLoad::begin(const Catalog& catalog, ZoneId zone,
                                  std::span<std::byte* const> slots,
                                  std::span<std::byte> read_buffer, const PackReading& reading) {
-  // The chunks of the usual payload come first in a pack, and are stored no longer than they
-  // decode.
+  // The chunks of the usual payload come first in a pack, and no chunk is stored in more bytes than
+  // it decodes to.
   const std::uint64_t soon = std::uint64_t{catalog.zones[zone].slots} * kSlotBytes;
   Result<PackReader> pack = open_pack(catalog, zone, reading, soon);
   if (!pack) return pack.error();
@@ -70,7 +70,7 @@ void ZoneLoad::ask_ahead() {
   }
 }
 
-// Brings [from, from + size) into `buffer`.
+// Reads [from, from + size) into `buffer`.
 Result<ByteSpan> ZoneLoad::fetch(std::uint64_t from, std::size_t size,
                                  std::span<std::byte> buffer) {
   ask_ahead();
@@ -81,8 +81,9 @@ Result<ByteSpan> ZoneLoad::fetch(std::uint64_t from, std::size_t size,
   return window;
 }
 
-// The stored bytes of the next chunk: in the buffer, with those of the wanted ones that follow it
-// in the file and fit; or, a raw chunk that may start anywhere, in its place.
+// Reads the stored bytes of the next chunk: into the buffer, together with those of the wanted
+// chunks that follow it in the file and fit; or, for a raw chunk that may start anywhere, straight
+// into `place`.
 Result<ByteSpan> ZoneLoad::stored(const fb::ChunkEntry& entry, std::byte* place) {
   const std::uint64_t from = entry.offset();
   const std::uint64_t end = from + entry.stored_size();

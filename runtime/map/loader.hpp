@@ -19,10 +19,10 @@ Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, const PackRead
 
 // Loads one zone, chunk by chunk, from its pack into slots: read into a private buffer, check,
 // decode into place. Between two step() calls the load can be given up. One step waits for at most
-// one window of at most kReadBufferBytes, holding the next chunk and those behind it that fit.
+// one window of at most kReadBufferBytes, holding the next chunk and those after it that fit.
 //
-// Threads: the loader's. Memory: the index and one read buffer, both counted in
-// Catalog::fixed_bytes.
+// Threads: the loader's.
+// Memory: the index and one read buffer, both counted in Catalog::fixed_bytes.
 class ZoneLoad {
  public:
   // `slots` are the zone's, in placement order, kSlotBytes each; catalog.zones[zone].slots of them.
@@ -37,7 +37,7 @@ class ZoneLoad {
   ByteCount stored_bytes_read() const noexcept { return stored_bytes_; }
   // Asked from storage so far: windows, header, index and tail.
   ByteCount bytes_fetched() const noexcept { return fetched_; }
-  // Where the chunks loaded so far stand.
+  // Where the chunks loaded so far lie.
   const std::vector<ChunkRef>& chunks() const noexcept { return chunks_; }
 
  private:

@@ -7,7 +7,7 @@
 namespace zonepack {
 namespace {
 
-Result<void> check_pack(const Catalog& map, ZoneId zone, ReadMode mode, std::string& fault) {
+Outcome<void> check_pack(const Catalog& map, ZoneId zone, ReadMode mode) {
   const CatalogZone& wanted = map.zones[zone];
   const auto file = StorageFile::open(map.folder + "/" + wanted.pack, mode);
   Error error = file.error();
@@ -19,26 +19,23 @@ Result<void> check_pack(const Catalog& map, ZoneId zone, ReadMode mode, std::str
     error = open_pack(map, zone, mode).error();
   }
   if (error.code == ErrorCode::kOk) return {};
-  fault = load_fault(map, zone, error);
-  return error;
+  return failure(load_fault(map, zone, error), error.code);
 }
 
 }  // namespace
 
-Result<void> check_next_version(const Catalog& in_use, const Catalog& next, ReadMode mode,
-                                std::string& fault) {
+Outcome<void> check_next_version(const Catalog& in_use, const Catalog& next, ReadMode mode) {
   if (next.lineage != in_use.lineage) {
-    fault = next.folder + "/" + std::string(kManifestName) + ": is another map (lineage " +
-            to_hex(next.lineage) + ", not " + to_hex(in_use.lineage) +
-            "), where the robot's pose means nothing; start zoned again with it";
-    return ErrorCode::kMismatch;
+    return failure(next.folder + "/" + std::string(kManifestName) + ": is another map (lineage " +
+                       to_hex(next.lineage) + ", not " + to_hex(in_use.lineage) +
+                       "), where the robot's pose means nothing; start zoned again with it",
+                   ErrorCode::kMismatch);
   }
   if (next.version == in_use.version) {
-    fault = next.folder + ": is the version that is in use";
-    return ErrorCode::kExists;
+    return failure(next.folder + ": is the version that is in use", ErrorCode::kExists);
   }
   for (ZoneId zone = 0; zone < next.zones.size(); ++zone) {
-    if (const auto checked = check_pack(next, zone, mode, fault); !checked) return checked;
+    if (const auto checked = check_pack(next, zone, mode); !checked) return checked;
   }
   return {};
 }

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-// Rounded up, so that roundings never add to the rate. Up to 9 GB at once.
+// Rounded up, so that rounding never raises the rate. For up to 9 GB at once.
 std::int64_t time_for(ByteCount bytes, std::uint64_t bytes_per_s) noexcept {
   constexpr ByteCount kMost = 9'000'000'000;
   const std::uint64_t cost = std::min(bytes, kMost) * std::uint64_t{kSecond};

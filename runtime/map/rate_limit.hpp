@@ -8,8 +8,8 @@
 
 namespace zonepack {
 
-// A token bucket for reading: in any stretch of time t no more than rate * t + burst bytes, and the
-// one window that emptied the bucket. Pure arithmetic; whoever reads keeps the clock and sleeps.
+// A token bucket for reading: in any interval of length t at most rate * t + burst bytes, plus the
+// one window that emptied the bucket. Pure arithmetic; the caller keeps the clock and sleeps.
 //
 // Threads: one owner. No allocation.
 class RateLimit {
@@ -17,7 +17,8 @@ class RateLimit {
   // bytes_per_s 0: no limit.
   explicit RateLimit(std::uint64_t bytes_per_s, ByteCount burst = kReadBufferBytes) noexcept;
 
-  // Counts what was read up to now_ns, a monotonic time; returns for how long to read nothing.
+  // Counts what was read up to now_ns, a monotonic time; returns for how many nanoseconds to read
+  // nothing.
   std::int64_t spend(ByteCount bytes, std::int64_t now_ns) noexcept;
 
  private:

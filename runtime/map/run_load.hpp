@@ -15,19 +15,20 @@ class LoadHost {
   virtual ~LoadHost() = default;
 
   virtual std::int64_t now_ns() noexcept = 0;  // monotonic
-  // Sleeps until then, or until the load is to be given up; may come back early.
+  // Sleeps until then, or until the load is to be given up; may return early.
   virtual void sleep_until(std::int64_t time_ns) noexcept = 0;
   virtual bool cancelled() noexcept = 0;
-  // After every chunk.
+  // Called after every chunk.
   virtual void loaded(const ChunkRef&) noexcept {}
 };
 
-// Takes a load to its end at no more than the limit's rate. kCancelled as soon as the load is to be
-// given up: asked before every chunk and through every pause, so that at most one window
-// (kReadBufferBytes) is read and one chunk decoded after the wish. Other errors: step()'s.
+// Runs a load to its end at no more than the limit's rate. kCancelled once the load is to be given
+// up, which is checked before every chunk and during every pause: at most one window
+// (kReadBufferBytes) is read and one chunk decoded after the request. Other errors are those of
+// step().
 //
-// Closing the pack costs time too (pages are dropped from the cache): tell of the end first, then
-// let go of the load.
+// Closing the pack takes time too (its pages are dropped from the cache): report the end first,
+// then destroy the load.
 Result<void> run_load(ZoneLoad& load, RateLimit& limit, LoadHost& host) noexcept;
 
 }  // namespace zonepack

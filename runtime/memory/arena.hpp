@@ -12,15 +12,15 @@
 
 namespace zonepack {
 
-// One block of memory cut into equal slots. It knows nothing about which slot holds what.
+// One block of memory cut into equal slots. It does not know which slot holds what.
 //
-// Real-time: the block is reserved once; slot() is arithmetic.   Threads: the block itself is
-// shared; a slot is written only by whoever owns it (see SlotPool) and read by others under a
-// generation check.
+// Real-time: the block is reserved once; slot() is arithmetic.
+// Threads: the block itself is shared; a slot is written only by its owner (see SlotPool) and read
+// by others under a generation check.
 class Arena {
  public:
-  // Reserves `slots` slots of `slot_bytes` each, page-aligned and zeroed, so that no page is
-  // missing later.
+  // Reserves `slots` slots of `slot_bytes` each, page-aligned and zeroed, so that no page faults
+  // later.
   Arena(std::uint32_t slots, std::size_t slot_bytes);
 
   std::span<std::byte> slot(SlotIndex index) noexcept {

@@ -30,13 +30,13 @@ Result<ArenaMemory> ArenaMemory::obtain(ByteCount bytes, const Source& source) {
       if (memory) return ArenaMemory(std::move(*memory), std::move(*lock), true);
     }
   }
-  // Of no use: let go of it before anything is waited for.
-  kept_memory.close();
-  kept_lock.close();
+  // Unusable: release it before waiting for anything.
+  kept_memory = Descriptor();
+  kept_lock = Descriptor();
   const Notifier none;
   const Notifier& manager = source.manager == nullptr ? none : *source.manager;
   for (const char* const name : {kMemoryName, kLockName}) {
-    if (const Result<void> told = manager.forget(name); !told) return told.error();
+    if (const Result<void> forgotten = manager.forget(name); !forgotten) return forgotten.error();
   }
   Result<FileLock> lock = FileLock::acquire(source.lock_path, source.wait);
   if (!lock) return lock.error();

@@ -12,28 +12,29 @@
 
 namespace zonepack {
 
-// The memory that zoned shares, such that a zoned which crashed and its successor never hold more
-// than one together: readers of the old one keep its pages charged for as long as they map them.
+// The memory that zoned shares. A crashed zoned and its successor never hold two such blocks at
+// once: readers of the old one keep its pages charged for as long as they map them.
 //
-// The service manager keeps the memory while zoned is down, and the next zoned takes the same pages
-// over. Where no manager does, or the memory has another size, a lock tells: every reader is sent a
-// share of it together with the memory, so it is held until the last of them is gone.
+// The service manager keeps the memory while zoned is down, and the next zoned takes over the same
+// pages. Where no manager does, or the size differs, a lock decides: every reader receives a share
+// of it together with the memory, so it stays held until the last reader is gone.
 class ArenaMemory {
  public:
   struct Source {
     std::string lock_path;  // in the folder of the socket
     std::chrono::milliseconds wait{5000};
     const Notifier* manager = nullptr;
-    std::vector<HandedFile>* handed = nullptr;  // what the manager kept; what is used is taken out
+    std::vector<HandedFile>* handed = nullptr;  // what the manager kept; taken out when used
   };
 
   // kBusy: after `wait`, readers of an earlier zoned, or another zoned, still hold its memory;
-  // why_busy() is for people. kIo with errno.
+  // why_busy() explains it to people. kIo with errno.
   static Result<ArenaMemory> obtain(ByteCount bytes, const Source& source);
   static std::string why_busy(const Source& source);
 
   std::span<std::byte> bytes() noexcept { return memory_.bytes(); }
-  // Memory of an earlier zoned, with its content: SharedMap::lay_out() begins a new epoch there.
+  // True for the memory of an earlier zoned, with its content: SharedMap::lay_out() begins a new
+  // epoch there.
   bool taken_over() const noexcept { return taken_over_; }
 
   // For each reader: the memory, open for reading only, and a share of the lock, to be sent along.

@@ -57,7 +57,7 @@ Result<void> Residency::check(ZoneId zone, ZoneNeed need, Purpose purpose) const
   if (!fits(need, {slot_count_, signature_limit(limits_)})) {
     return {ErrorCode::kTooLarge, need.slots};
   }
-  // What is used and what is free together are the limit, so these sums cannot overflow.
+  // Used and free together make up the limit, so these sums cannot overflow.
   NeedSum available = free();
   if (!frozen_) {
     available.add(evictable_.sum());

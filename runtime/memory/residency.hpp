@@ -28,11 +28,11 @@ struct ResidencyLimits {
   ByteCount fixed = 0;   // charged from the start: tables, manifest, graph, read buffers
   ByteCount slot_bytes = 0;
   std::uint64_t max_signatures = 0;  // the paper's MemoryThr; 0: no such limit
-  // Of the slots and signatures that two zones joined by a portal take together, the most there
-  // are: what pins must leave free.
+  // The most slots and signatures that any two zones joined by a portal need together: what pins
+  // must leave free.
   NeedSum largest_pair;
-  std::int64_t lease_ns = 0;               // how long a lease lasts unless released before
-  std::uint32_t most_slots = kNoSlot - 1;  // that there are, whatever the budget would pay for
+  std::int64_t lease_ns = 0;               // how long a lease lasts unless released earlier
+  std::uint32_t most_slots = kNoSlot - 1;  // that exist, however many the budget allows
 };
 
 // A zone that admit() unloaded. Its slots belong to the receiver, who gives them to the SlotPool.
@@ -65,10 +65,13 @@ struct ResidencyCounters {
 // not fit anyway.
 //
 // Invariant: charged() <= limits.budget and signatures() <= limits.max_signatures (unless 0),
-// before and after every call. Protected, pinned and filling zones are never evicted. A resident
-// zone is on exactly one list: evictable, leased, or (protected or pinned) none; so what could be
-// evicted is a running sum. Real-time: no allocation after construction; every call is O(1),
-// admit() O(1) for each zone evicted. Threads: owned by the control thread.
+// before and after every call.
+// Invariant: protected, pinned and filling zones are never evicted.
+// Invariant: a resident zone is on exactly one list: evictable, leased, or (protected or pinned)
+// none; so what could be evicted is a running sum.
+// Real-time: no allocation after construction; every call is O(1), admit() O(1) for each zone
+// evicted.
+// Threads: owned by the control thread.
 class Residency {
  public:
   Residency(std::size_t zones, const ResidencyLimits& limits);
@@ -76,10 +79,10 @@ class Residency {
   Residency& operator=(const Residency&) = delete;
 
   // Charges `need` to `zone`, first evicting least recently used zones that nothing protects,
-  // coldest first, each told to on_evicted(const Eviction&); opens a new generation, and the loader
-  // fills the zone next. Returns how many were evicted. On error nothing has changed: kTooLarge
-  // (not even alone), kNoRoom (not beside what is protected), kBusy (a cancelled load still holds
-  // its slots), kExists (filling or resident already).
+  // coldest first, each passed to on_evicted(const Eviction&); opens a new generation, and the
+  // loader fills the zone next. Returns how many were evicted. On error nothing has changed:
+  // kTooLarge (would not fit even alone), kNoRoom (does not fit alongside what is protected), kBusy
+  // (a cancelled load still holds its slots), kExists (filling or resident already).
   template <typename OnEvicted>
   Result<std::size_t> admit(ZoneId zone, ZoneNeed need, Purpose purpose, OnEvicted&& on_evicted) {
     if (const Result<void> possible = check(zone, need, purpose); !possible)
@@ -90,11 +93,11 @@ class Residency {
     return evictions;
   }
 
-  // The loader filled the zone, even if it was asked to give up in between: the zone is resident.
+  // The loader filled the zone, even if it was asked to give up meanwhile: the zone is resident.
   void complete(ZoneId zone, std::uint32_t generation, SlotChain slots) noexcept;
 
-  // A zone that was resident when a run is gone on with is so again, the most recently used: before
-  // the first cycle. kNoRoom, kTooLarge, kExists.
+  // Makes a zone resident that was so where a recorded run continues, as the most recently used.
+  // Before the first cycle. kNoRoom, kTooLarge, kExists.
   Result<void> restore(ZoneId zone, ZoneNeed need, std::uint32_t generation) noexcept;
 
   // The loader gave the slots back, having failed or been cancelled: the zone is absent.
@@ -112,18 +115,18 @@ class Residency {
   Result<void> pin(ZoneId zone, ZoneNeed need) noexcept;
   void unpin(ZoneId zone) noexcept;
 
-  // Charges bytes and slots for something that is no zone (another map on its way in), if there is
-  // room for them without evicting anything; else kNoRoom, and nothing has changed.
+  // Charges bytes and slots for something other than a zone (another map on its way in), if they
+  // fit without evicting anything; else kNoRoom, and nothing has changed.
   Result<void> set_aside(ByteCount bytes, std::uint32_t slots) noexcept;
   void give_up_set_aside() noexcept;
 
-  // Evicts a zone that is resident, whoever wants it. kNotFound when it is not.
+  // Evicts a resident zone, even a wanted one. kNotFound when it is not.
   Result<Eviction> drop(ZoneId zone) noexcept;
 
-  // Counts on from another map's counters.
+  // Continues another map's counters.
   void continue_counters(const ResidencyCounters& counters) noexcept { counters_ = counters; }
 
-  // While frozen nothing is evicted: admit() says kNoRoom where it would have to.
+  // While frozen nothing is evicted: admit() returns kNoRoom where it would have to.
   void freeze(bool frozen) noexcept { frozen_ = frozen; }
   bool frozen() const noexcept { return frozen_; }
 
@@ -131,7 +134,7 @@ class Residency {
   void touch(ZoneId zone) noexcept;
 
   // A lease delays evictions made for approached zones until released, run out or revoked.
-  // kNotFound when the zone is not resident. Reading is using: a lease also touches.
+  // kNotFound when the zone is not resident. A lease also touches the zone, as reading is using.
   Result<Lease> lease(ZoneId zone, std::int64_t now_ns) noexcept;
   void release(const Lease& lease) noexcept;
   void expire_leases(std::int64_t now_ns) noexcept;
@@ -161,7 +164,7 @@ class Residency {
   // Operations on lists and chains so far: each eviction adds the same number.
   std::uint64_t operations() const noexcept;
 
-  // How many slots a budget has room for beside what is fixed.
+  // How many slots a budget has room for besides what is fixed.
   static std::uint32_t slots_within(ByteCount budget, ByteCount fixed,
                                     ByteCount slot_bytes) noexcept;
   // What the tables of this class take from the budget.
@@ -195,8 +198,8 @@ class Residency {
   void end_leases(ZoneId zone) noexcept;
 
   ResidencyLimits limits_;
-  std::uint32_t paid_slots_;  // that the budget has room for
-  std::uint32_t slot_count_;  // of these, that there are
+  std::uint32_t paid_slots_;  // within the budget
+  std::uint32_t slot_count_;  // of these, that exist
   std::vector<Record> records_;
   std::vector<ZoneLink> links_;
   std::vector<ZoneLink> timer_links_;
@@ -206,7 +209,7 @@ class Residency {
   NeedSum used_;
   NeedSum resident_;
   NeedSum pinned_;
-  std::uint64_t set_aside_ = 0;        // slots, or the bytes of as many
+  std::uint64_t set_aside_ = 0;        // slots, bytes counted as whole slots
   std::uint64_t set_aside_slots_ = 0;  // of these, real ones
   bool frozen_ = false;
   ResidencyCounters counters_;

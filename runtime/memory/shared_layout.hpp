@@ -10,16 +10,16 @@
 #include "runtime/pack_format/ids.hpp"
 #include "runtime/pack_format/limits.hpp"
 
-// The memory that zoned shares with readers, from its first byte. All integers are those of the
-// machine; reader and writer run on the same one. Offsets count from the first byte.
+// The memory that zoned shares with readers, from its first byte. Integers are in the byte order of
+// the machine, which reader and writer share. Offsets count from the first byte.
 //
 //   header | zones: SharedZone[zone_capacity] | links: u32[slots] | chunks: SharedChunk[slots][8] |
 //   slots: 16 KiB each, page-aligned
 //
-// A reader takes a zone's state; if it is not 0 it follows head and links, copies what it needs or
-// reads in place, and takes the state again, behind an acquire fence: what was read is valid only
-// if the state is the same. Until then every number read may be of another load, so each is held
-// against its bound before it is used.
+// A reader loads a zone's state; if it is not 0, it follows head and links, copies what it needs or
+// reads in place, and loads the state again after an acquire fence: what it read is valid only if
+// the state is unchanged. Until then any number it read may belong to another load, so each is
+// checked against its bound before use.
 namespace zonepack {
 
 inline constexpr std::uint64_t kSharedMagic = 0x3150414D454E4F5Aull;  // "ZONEMAP1"
@@ -32,7 +32,7 @@ struct SharedHeader {
   std::uint32_t zone_capacity;
   std::uint32_t slot_count;
   std::uint64_t zones_at, links_at, chunks_at, slots_at, total_bytes;
-  std::atomic<std::uint32_t> epoch;       // one more with every start of zoned and change of map
+  std::atomic<std::uint32_t> epoch;       // incremented at every start of zoned and change of map
   std::atomic<std::uint32_t> zone_count;  // of the map in use
 };
 
@@ -42,7 +42,7 @@ struct SharedZone {
   std::atomic<std::uint32_t> slots;
 };
 
-// Where a decoded chunk stands in its slot.
+// Where a decoded chunk lies in its slot.
 struct alignas(4) SharedChunk {
   std::uint8_t kind = 0;          // PayloadKind
   std::uint8_t offset_lines = 0;  // of kChunkAlignment bytes
@@ -51,7 +51,7 @@ struct alignas(4) SharedChunk {
 static_assert(sizeof(SharedChunk) == 4 && kSlotBytes / kChunkAlignment <= 256);
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
-// Where the tables stand for so many zones and slots.
+// Where the tables lie for that many zones and slots.
 struct SharedPlaces {
   ByteCount zones = 0, links = 0, chunks = 0, slots = 0, total = 0;
 };
@@ -74,7 +74,7 @@ constexpr ByteCount shared_map_bytes(std::uint32_t zone_capacity, std::uint32_t 
   return shared_places(zone_capacity, slots).total;
 }
 
-// Whether a header describes memory of `bytes` bytes soundly.
+// Whether a header correctly describes memory of `bytes` bytes.
 inline bool shared_header_is_sound(const SharedHeader& header, std::uint64_t bytes) noexcept {
   const SharedPlaces at = shared_places(header.zone_capacity, header.slot_count);
   return header.magic == kSharedMagic && header.version == kSharedVersion &&

@@ -59,7 +59,7 @@ void SharedMap::publish(ZoneId zone, std::uint32_t generation, const SlotChain& 
 void SharedMap::withdraw(ZoneId zone) noexcept {
   ZP_REQUIRE(zone < header_->zone_capacity);
   zones_[zone].state.store(0, std::memory_order_relaxed);
-  // The new owner's writes to the slots stand behind this in every reader's eyes.
+  // Every reader sees this before the new owner's writes to the slots.
   std::atomic_thread_fence(std::memory_order_seq_cst);
 }
 

@@ -14,28 +14,31 @@
 
 namespace zonepack {
 
-// The writer's side. Ownership: refers to memory that outlives it.   Threads: publish() and
-// withdraw() by the control thread; slots, links and chunk places by the loader, which owns a slot
-// until its zone is published and again after the zone was withdrawn. Real-time: nothing allocates.
+// The writer's side of the shared memory.
+//
+// Ownership: refers to memory that outlives it.
+// Threads: publish() and withdraw() by the control thread; slots, links and chunk places by the
+// loader, which owns a slot until its zone is published and again after the zone was withdrawn.
+// Real-time: nothing allocates.
 class SharedMap final : public ZoneDirectory {
  public:
-  // Lays out zeroed memory of shared_map_bytes(), or takes over memory laid out before for the same
-  // numbers: every zone is withdrawn, and a new epoch begins. kMismatch when it was laid out for
-  // others.
+  // Lays out zeroed memory of shared_map_bytes(), or takes over memory laid out earlier for the
+  // same numbers: every zone is withdrawn, and a new epoch begins. kMismatch when it was laid out
+  // for other numbers.
   static Result<SharedMap> lay_out(std::span<std::byte> memory, std::uint32_t zone_capacity,
                                    std::uint32_t slots);
 
   void publish(ZoneId zone, std::uint32_t generation, const SlotChain& slots) noexcept override;
   void withdraw(ZoneId zone) noexcept override;
 
-  // Another map's zones take the places of the last one's, all of which were withdrawn. kTooLarge
+  // Another map's zones replace those of the last one, all of which were withdrawn. kTooLarge
   // beyond the capacity.
   Result<void> begin_map(std::uint32_t zones) noexcept override;
 
-  // The load that can be read now; nothing when the zone cannot be. Any thread.
+  // The generation that can be read now; nothing when the zone cannot be read. Any thread.
   std::optional<std::uint32_t> generation(ZoneId zone) const noexcept;
 
-  // One more with every start of zoned and every map.
+  // Incremented at every start of zoned and every change of map.
   std::uint32_t epoch() const noexcept { return header_->epoch.load(std::memory_order_acquire); }
 
   std::uint32_t slot_count() const noexcept { return header_->slot_count; }

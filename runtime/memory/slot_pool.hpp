@@ -9,24 +9,25 @@
 
 namespace zonepack {
 
-// A slot's place in the arena.
+// A slot's index in the arena.
 using SlotIndex = std::uint32_t;
 inline constexpr SlotIndex kNoSlot = 0xFFFFFFFFu;
 
-// Slots linked by SlotPool's table, in the order in which they are filled. A plain value: whoever
-// holds it owns the slots; the count never differs from the number of links between head and tail.
+// Slots linked by SlotPool's table, in the order in which they are filled. A plain value whose
+// holder owns the slots; count is always the number of slots from head to tail.
 struct SlotChain {
   SlotIndex head = kNoSlot;
   SlotIndex tail = kNoSlot;
   std::uint32_t count = 0;
 };
 
-// The free slots of an arena, and the links of all chains: one u32 per slot.
+// The free slots of an arena, and the links of all chains: one u32 per slot. A slot given back is
+// reused last, which gives a slow reader the longest time to notice.
 //
 // Invariant: every slot is on the free list or in exactly one chain that was taken and not given
-// back. Oldest first: a slot given back is reused last, so that a slow reader has the longest time
-// to notice. Real-time: no allocation after construction; take_one and give_back are O(1). Threads:
-// owned by the thread that fills slots (the loader's); control passes chains, never links.
+// back.
+// Real-time: no allocation after construction; take_one and give_back are O(1).
+// Threads: owned by the thread that fills slots (the loader's); control passes chains, never links.
 class SlotPool {
  public:
   explicit SlotPool(std::uint32_t slots);
@@ -50,7 +51,7 @@ class SlotPool {
   std::uint32_t free_count() const noexcept { return free_.count; }
   std::uint32_t slot_count() const noexcept { return static_cast<std::uint32_t>(next_.size()); }
 
-  // What a pool of this many slots takes from the budget beside the slots themselves.
+  // What a pool of this many slots takes from the budget besides the slots themselves.
   static ByteCount table_bytes(std::uint32_t slots) noexcept { return ByteCount{4} * slots; }
 
  private:

@@ -9,8 +9,9 @@
 
 namespace zonepack {
 
-// Where readers look up which zones are resident and where. Real-time: neither call blocks,
-// allocates or throws.   Threads: called by the control thread.
+// Where readers look up which zones are resident and where.
+// Real-time: neither call blocks, allocates or throws.
+// Threads: called by the control thread.
 class ZoneDirectory {
  public:
   virtual ~ZoneDirectory() = default;
@@ -18,11 +19,11 @@ class ZoneDirectory {
   // The zone can be read from here on.
   virtual void publish(ZoneId zone, std::uint32_t generation, const SlotChain& slots) noexcept = 0;
 
-  // Called before the zone's slots are handed on: what is read from now on is not valid.
+  // Called before the zone's slots are reused: what is read from here on is not valid.
   virtual void withdraw(ZoneId zone) noexcept = 0;
 
-  // Another map of so many zones begins; all of the last one's were withdrawn. kTooLarge when there
-  // is no room for so many: nothing has changed.
+  // Another map with that many zones begins; all zones of the last one were withdrawn. kTooLarge
+  // when there is no room for that many, and nothing has changed.
   virtual Result<void> begin_map(std::uint32_t zones) noexcept = 0;
 };
 

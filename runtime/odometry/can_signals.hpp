@@ -40,7 +40,7 @@ struct CanSignal {
     static constexpr std::size_t kMostRanges = 8;
     SignalBits bits;
     std::array<Values, kMostRanges> values{};
-    std::uint8_t ranges = 0;  // of values, that count
+    std::uint8_t ranges = 0;  // how many of values count
     friend bool operator==(const Multiplexer&, const Multiplexer&) = default;
   };
   static constexpr std::size_t kMostLevels = 3;
@@ -51,11 +51,11 @@ struct CanSignal {
   double factor = 1;  // value = raw * factor + offset
   double offset = 0;
   std::array<Multiplexer, kMostLevels> multiplexers{};  // all must select it, outermost first
-  std::uint8_t levels = 0;                              // of multiplexers, that count
+  std::uint8_t levels = 0;                              // how many of multiplexers count
   friend bool operator==(const CanSignal&, const CanSignal&) = default;
 };
 
-// Adds a multiplexer inside those there are, with one range of values. False: no room.
+// Adds a multiplexer inside the existing ones, with one range of values. False: no room.
 bool add_multiplexer(CanSignal& signal, const SignalBits& bits, CanSignal::Values values) noexcept;
 // Adds a range to the innermost one. False: no room, or no multiplexer.
 bool add_values(CanSignal& signal, CanSignal::Values values) noexcept;
@@ -81,7 +81,7 @@ SignalReading read_signal(const CanSignal& signal, const CanFrame& frame) noexce
 // Raw bits, right-aligned; the frame must be long enough.
 std::uint64_t extract_bits(const SignalBits& bits, const CanFrame& frame) noexcept;
 
-// newest - previous of a counter of `length` bits that wraps, taken the short way round: in
+// newest - previous of a counter of `length` bits that wraps, taken the shorter way around: in
 // [-2^(length-1), 2^(length-1)).
 std::int64_t wrapped_difference(std::int64_t newest, std::int64_t previous,
                                 unsigned length) noexcept;

@@ -25,17 +25,18 @@ struct CanOpenCounters {
   std::uint64_t sync_lost = 0;        // times SYNC fell silent
 };
 
-// Whether the drives whose process data is read are alive: all watched nodes in the state
-// operational and heard within their timeout, and SYNC too. Time is that of the frames.
+// Whether the drives whose process data is read are alive: all watched nodes are operational and
+// were heard within their timeout, and so was SYNC. Time is that of the frames' stamps.
 // Source: CiA 301, "CANopen application layer and communication profile": heartbeat 0x700 + node
 // with the state in one byte (0 boot-up, 4 stopped, 5 operational, 127 pre-operational), SYNC 0x80.
-// Real-time: no allocation, at most kMostNodes + 1 comparisons a frame.   Threads: one.
+// Real-time: no allocation, at most kMostNodes + 1 comparisons a frame.
+// Threads: one.
 class CanOpenWatch {
  public:
   explicit CanOpenWatch(const CanOpenWatchSettings& settings) noexcept;
 
-  // Takes any frame of the bus. True: a node that was alive before has started anew, so that its
-  // counters may begin again.
+  // Takes any frame of the bus. True when a node that was alive before has restarted, so that its
+  // counters may have been reset.
   bool take(const CanFrame& frame) noexcept;
 
   // As of the newest frame taken. Always true when nothing is watched.

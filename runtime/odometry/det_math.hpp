@@ -4,15 +4,16 @@
 // Sine, cosine and arc tangent with the same bits on every CPU, compiler and C library.
 //
 // libm's differ between architectures and even between two CPUs (its variants with FMA are chosen
-// at run time), so whatever decides uses these: only + - * / on doubles, in a fixed order, built
+// at run time), so code that decides uses these: only + - * / on doubles, in a fixed order, built
 // with -ffp-contract=off. Taylor series after reduction to a short interval; every constant can be
-// checked by hand. Real-time: no allocation, no table built at start, a fixed number of operations.
+// checked by hand.
+// Real-time: no allocation, no table built at start, a fixed number of operations.
 namespace zonepack {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-// Largest difference to the exact value: 1.5e-16, |angle| <= kLargestAngle_rad.
-// NaN for anything else: not finite, or turned more often than an angle kept wrapped ever is.
+// Largest difference to the exact value: 1.5e-16, |angle| <= kLargestAngle_rad. NaN for anything
+// else: not finite, or larger than any angle that is kept wrapped.
 inline constexpr double kLargestAngle_rad = 1e6;
 double det_sin(double angle_rad) noexcept;
 double det_cos(double angle_rad) noexcept;

@@ -85,7 +85,7 @@ std::size_t FixCandidates::list(std::array<PoseHypothesis, kMaxHypotheses>& into
                                 std::uint32_t least_fixes) const noexcept {
   std::array<const Candidate*, kMaxHypotheses> order{};
   for (std::size_t i = 0; i < count_; ++i) order[i] = &all_[i];
-  // Insertion sort; of equals the newer first.
+  // Insertion sort; among equals the newer first.
   for (std::size_t i = 1; i < count_; ++i) {
     for (std::size_t j = i; j > 0; --j) {
       const int higher = rank(*order[j]) - rank(*order[j - 1]);

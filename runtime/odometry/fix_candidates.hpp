@@ -13,11 +13,12 @@
 namespace zonepack {
 
 // Places where the robot may be, each backed by fixes that agree with each other through odometry:
-// the hypotheses before a pose is trusted, and afterwards the runs of refused fixes. The pose of a
-// start that was given is one of them, without a fix.
+// the hypotheses before a pose is trusted, and afterwards the runs of refused fixes. A given start
+// pose is one of them, without a fix.
 //
-// A candidate stands at an entry of the history (its anchor), that of its last fix, so that a later
-// fix is compared where it was taken. Real-time: no allocation; at most kMaxHypotheses candidates.
+// A candidate is anchored at an entry of the history, that of its last fix, so that a later fix is
+// compared where it was taken.
+// Real-time: no allocation; at most kMaxHypotheses candidates.
 class FixCandidates {
  public:
   struct Candidate {
@@ -27,33 +28,34 @@ class FixCandidates {
     std::uint32_t fixes = 0;
     std::uint32_t run = 0;     // of these, since interrupt()
     std::int64_t last_ns = 0;  // when the last of them was taken
-    bool near_guess = false;   // its first fix lay within the gate of the start that was given
+    bool near_guess = false;   // its first fix lay within the gate of the given start
   };
 
   void clear() noexcept { count_ = 0; }
 
-  // A start that was given, at the newest entry; forgets all others.
+  // Adds a given start at the newest entry and forgets all others.
   void guess(const OdometryHistory& history, const UncertainPose& pose) noexcept;
 
   // Adds a fix, given at entry `index`, to the candidate that it agrees with best (within the gate,
-  // a squared Mahalanobis distance), or makes it one; the weakest gives way. Returns the candidate
-  // that was confirmed, nothing for a new one.
+  // a squared Mahalanobis distance), or makes it a new one in place of the weakest. Returns the
+  // candidate that was confirmed; nothing for a new one.
   std::optional<Candidate> add(const OdometryHistory& history, const UncertainPose& fix,
                                std::uint64_t index, double gate_chi2) noexcept;
 
-  // A fix was accepted elsewhere: runs begin anew, and who has no fix of the last kMemory_ns is
-  // gone.
+  // A fix was accepted elsewhere: runs start over, and candidates without a fix in the last
+  // kMemory_ns are dropped.
   void interrupt(std::int64_t t_ns) noexcept;
 
-  // Writes those with at least `least_fixes` into the places from `first` on, best first: those
-  // with most fixes; a given start before a single fix that contradicts it. Returns where it ended.
+  // Writes the candidates with at least `least_fixes` to `into` from index `first` on, best first:
+  // by most fixes; a given start before a single fix that contradicts it. Returns the index after
+  // the last.
   std::size_t list(std::array<PoseHypothesis, kMaxHypotheses>& into, std::size_t first,
                    std::uint32_t least_fixes) const noexcept;
 
-  // What happens to the history, told before or after as named.
+  // Changes of the history, reported before or after they happen, as the names say.
   void after_step(const UncertainPose& step) noexcept;  // at its newest end
   void before_oldest_goes(const OdometryHistory& history) noexcept;
-  void after_split(std::uint64_t index) noexcept;               // entries from index renumbered
+  void after_split(std::uint64_t index) noexcept;  // entries from index on are renumbered
   void after_rewrite(const OdometryHistory& history) noexcept;  // steps changed
   void after_restart(const OdometryHistory& history) noexcept;  // one entry, poses stay
   bool stand_on(std::uint64_t index) const noexcept;

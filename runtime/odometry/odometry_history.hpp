@@ -35,7 +35,7 @@ class OdometryHistory {
   Entry& back() noexcept { return at(newest()); }
   const Entry& back() const noexcept { return at(newest()); }
 
-  // Forgets everything and begins with one entry; numbers go on.
+  // Forgets everything and begins with one entry; numbering continues.
   void restart(std::int64_t t_ns) noexcept;
 
   // Adds an entry at t_ns, not before back().t_ns, dropping the oldest when full.
@@ -52,7 +52,7 @@ class OdometryHistory {
   UncertainPose carry(UncertainPose pose, std::uint64_t from, std::uint64_t to) const noexcept;
 
   // Cuts the step to entry `index` in two at t_ns, between its ends: entry `index` is then at t_ns,
-  // and all from the old one on have numbers one higher. The oldest entry goes when full.
+  // and the old one and all after it move up by one. The oldest entry goes when full.
   void split(std::uint64_t index, std::int64_t t_ns) noexcept;
 
   // Spreads a motion that took from from_ns to to_ns, at constant speed, over those entries of
@@ -64,7 +64,7 @@ class OdometryHistory {
   std::uint64_t fill_drift(std::int64_t from_ns, std::int64_t to_ns,
                            const UncertainPose& motion) noexcept;
 
-  // States after entry `from` anew from its state, steps and fixes.
+  // Recomputes the states after entry `from` from its state, the steps and the fixes.
   void replay_from(std::uint64_t from) noexcept;
 
  private:

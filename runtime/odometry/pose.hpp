@@ -38,7 +38,7 @@ struct PoseEstimate {
 struct PoseHypothesis {
   Pose2 T_map_base;
   Covariance2 covariance;
-  std::uint32_t fixes = 0;  // absolute fixes behind it; 0: the start that was given
+  std::uint32_t fixes = 0;  // absolute fixes that support it; 0: a given start
 };
 inline constexpr std::size_t kMaxHypotheses = 4;
 

@@ -72,7 +72,8 @@ void PoseFilter::start_at(std::int64_t t_ns, const Pose2& T_map_base, double sig
   list_hypotheses();
 }
 
-// Whether a step may become part of the newest entry: short ones share it, and nothing hangs on it.
+// Whether a step may become part of the newest entry: short steps share an entry to which nothing
+// is anchored.
 bool PoseFilter::may_extend_newest(std::int64_t t_ns, bool drift) const noexcept {
   if (history_.newest() == history_.oldest()) return false;
   const OdometryHistory::Entry& last = history_.back();
@@ -98,14 +99,15 @@ void PoseFilter::append(std::int64_t t_ns, const UncertainPose& step, bool drift
   history_.push(std::max(t_ns, history_.back().t_ns), step).drift = drift;
 }
 
-// Before an entry is added: what hangs on the oldest one, which may go, moves on to the next.
+// Before an entry is added: what is anchored at the oldest one, which may be dropped, moves to the
+// next.
 void PoseFilter::make_room() noexcept {
   if (!history_.full()) return;
   candidates_.before_oldest_goes(history_);
   valid_from_ = std::max(valid_from_, history_.oldest() + 1);
 }
 
-// A fix in a pause gets an entry of its own, so that it stays at its stamp when the motion is
+// A fix in a pause gets an entry of its own, so that it stays at its stamp once the motion is
 // known.
 void PoseFilter::split_drift(std::uint64_t index, std::int64_t t_ns) noexcept {
   const OdometryHistory::Entry& entry = history_.at(index);
@@ -129,7 +131,7 @@ void PoseFilter::predict(const OdometryIncrement& increment) noexcept {
   if (history_.empty()) history_.restart(increment.from_ns);
   const double back_s = seconds_between(increment.to_ns, history_.back().t_ns);
   if (back_s > settings_.history_s) {
-    // The clock was set back: the pose stays, its past is of no use any more.
+    // The clock was set back: the pose stays, its past no longer applies.
     const UncertainPose state = history_.back().state;
     history_.restart(increment.to_ns);
     history_.back().state = state;
@@ -292,8 +294,7 @@ void PoseFilter::list_hypotheses() noexcept {
   if (trusted_) {
     const UncertainPose& newest = history_.back().state;
     hypotheses_[0] = {newest.pose, newest.covariance, kFixesForTrust};
-    // Refused fixes that agree again and again, in between accepted ones: nobody knows who is
-    // right.
+    // Refused fixes keep agreeing in between accepted ones: which are right is unknown.
     hypothesis_count_ = candidates_.list(hypotheses_, 1, settings_.reinit_fixes);
   } else {
     hypothesis_count_ = candidates_.list(hypotheses_, 0, 0);

@@ -29,7 +29,7 @@ enum class CorrectionVerdict : std::uint8_t {
   kHypothesis,     // kept as one of the places where the robot may be
   kTrusted,        // agreed with an earlier fix: the pose is trusted from here on
   kReinitialised,  // the last of a run of rejected fixes that agree: the pose was moved to them
-  kReset,          // believed without asking: the pose was moved there
+  kReset,          // accepted unconditionally: the pose was moved there
   kOutlier,        // refused by the gate
   kTooOld,         // from before the history
   kFromFuture,     // stamped after now
@@ -67,20 +67,22 @@ struct PoseFilterCounters {
 // sometimes wrong.
 //
 // A fix acts at its stamp: the history keeps every increment, every state and every fix that was
-// used, and replays them from there, so the result is what it would be had nothing come late.
-// Before two fixes have agreed through odometry nothing is trusted, and each fix is a hypothesis of
-// its own. Once trusted, fixes outside the gate are refused; when reinit_fixes of them agree with
-// each other, with none accepted in between, the filter moves there: it cannot be locked out.
-// When as many agree in between accepted ones, trust is suspended and both places are listed.
+// used, and replays them from there, so the result is the same as if nothing had come late. Until
+// two fixes agree through odometry, nothing is trusted and each fix is a hypothesis of its own.
+// Once trusted, fixes outside the gate are refused; when reinit_fixes of them agree with each
+// other, with none accepted in between, the filter moves there: it cannot be locked out. When as
+// many agree in between accepted ones, trust is suspended and both places are listed.
 //
-// Real-time: all memory is taken in the constructor. predict() is O(1); correct() and the end
-// of a pause go through the history at most 2 * kMaxHypotheses + 2 times (252 entries with the
-// default settings).   Threads: one. Bit-exact: see det_math.hpp.
+// Real-time: all memory is taken in the constructor. predict() is O(1); correct() and the end of a
+// pause go through the history at most 2 * kMaxHypotheses + 2 times (252 entries with the default
+// settings).
+// Threads: one.
+// Bit-exact: see det_math.hpp.
 class PoseFilter {
  public:
   explicit PoseFilter(const PoseFilterSettings& settings);
 
-  // A start pose that somebody gave or that was saved: a guess, not trust. Forgets everything else.
+  // A start pose that was given or restored: a guess, not trusted. Forgets everything else.
   void start_at(std::int64_t t_ns, const Pose2& T_map_base) noexcept;
   void start_at(std::int64_t t_ns, const Pose2& T_map_base, double sigma_m,
                 double sigma_rad) noexcept;
@@ -94,7 +96,7 @@ class PoseFilter {
   CorrectionVerdict correct(const PoseCorrection& fix, std::int64_t now_ns) noexcept;
 
   // A fix that is certain, such as a contact at a known place: the pose is moved there and trusted,
-  // whatever was believed. kReset, or a refusal for its stamp or its numbers.
+  // whatever was believed before. kReset, or a refusal for its stamp or its numbers.
   CorrectionVerdict reset(const PoseCorrection& fix, std::int64_t now_ns) noexcept;
 
   // The pose at now_ns, carried on from the newest increment with its speed while odometry is

@@ -13,7 +13,7 @@ enum class OdometryModel : std::uint8_t {
   kDifferentialPositions,  // left and right wheel positions, counters that may wrap
   kWheelSpeeds,            // left and right wheel speeds
   kTwist,                  // forward speed and yaw rate
-  kAckermannPositions,     // way of the driven axle and steering angle
+  kAckermannPositions,     // distance of the driven axle and steering angle
   kAckermannSpeeds,        // speed of the driven axle and steering angle
   kMecanumPositions,       // front left, front right, rear left, rear right
   kMecanumSpeeds,
@@ -21,7 +21,7 @@ enum class OdometryModel : std::uint8_t {
   kOmniSpeeds,
 };
 
-// Whether signals are positions, so that differences of counters are ways.
+// Whether signals are positions, so that differences of counters are distances.
 bool reads_positions(OdometryModel model) noexcept;
 
 inline constexpr std::size_t kMostWheels = 4;
@@ -30,7 +30,7 @@ using PerWheel = std::array<double, kMostWheels>;
 // Where the wheels are, base_link in their middle (of the rear axle: Ackermann).
 struct WheelGeometry {
   double track_m = 0.413;       // between left and right contact points; not for kTwist and omni
-  double slip_factor = 1;       // skid steering: a turn takes so much more than the track tells
+  double slip_factor = 1;       // skid steering: a turn takes this much more than the track implies
   double wheelbase_m = 0.5;     // Ackermann, mecanum: between front and rear axle
   double omni_radius_m = 0.2;   // omni: from the middle to each wheel
   double omni_bearing_rad = 0;  // omni: of the first wheel seen from the middle; x is forward
@@ -44,12 +44,13 @@ struct BodyMotion {
   double turn_rad = 0;    // counter-clockwise
 };
 
-// The motion of ground ways (m) or speeds (m/s) of the wheels, in the order of the model; of kTwist
-// forward and turn; of Ackermann the way and the steering angle (rad; counter-clockwise, of a
-// wheel in the middle of the front axle).
+// The motion for ground distances (m) or speeds (m/s) of the wheels, in the order of the model; for
+// kTwist of forward and turn; for Ackermann of the distance and the steering angle (rad;
+// counter-clockwise, of a wheel in the middle of the front axle).
 //
-// Ground ways are along each wheel's rolling direction: forwards; of omni wheels counter-clockwise
-// around the middle. Mecanum rollers stand at 45 degrees, seen from above pointing to the middle.
+// Ground distances are along each wheel's rolling direction: forwards; for omni wheels
+// counter-clockwise around the middle. Mecanum rollers are at 45 degrees, seen from above pointing
+// to the middle.
 //   differential  forward (l + r) / 2                     turn (r - l) / (track * slip_factor)
 //   Ackermann     forward way                             turn way * tan(angle) / wheelbase
 //   mecanum       forward (fl + fr + rl + rr) / 4         turn (-fl + fr - rl + rr) / (2 (track +
@@ -63,7 +64,8 @@ class WheelModel {
 
   OdometryModel model() const noexcept { return model_; }
   std::size_t signals() const noexcept { return signals_; }
-  // Signals that are ways or speeds of wheels: all, but none of a twist and one of Ackermann.
+  // Signals that are distances or speeds of wheels: all, except none for a twist and one for
+  // Ackermann.
   std::size_t wheels() const noexcept { return wheels_; }
   // Metres at a wheel for each radian of a turn, at most.
   double turn_arm_m() const noexcept { return turn_arm_m_; }

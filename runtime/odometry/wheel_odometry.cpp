@@ -200,8 +200,8 @@ OdometryIncrement WheelOdometry::accept(const Sample& to, const Step& step) noex
   return increment;
 }
 
-// `step` leads from the suspect; on the way there, unknown, the robot is taken to have gone on as
-// before.
+// `step` leads from the suspect; on the way there, unknown, the robot is assumed to have continued
+// as before.
 OdometryIncrement WheelOdometry::rebase(const Sample& to, const Step& step) noexcept {
   ++counters_.rebased;
   const double apart_s = seconds_between(last_->stamp_ns, suspect_->stamp_ns);
@@ -226,7 +226,7 @@ OdometryIncrement WheelOdometry::rebase(const Sample& to, const Step& step) noex
   return increment;
 }
 
-// Counters that began again: two samples that continue each other are the new starting point.
+// Counters were reset: two samples that continue each other are the new starting point.
 std::optional<OdometryIncrement> WheelOdometry::start_anew(const Sample& sample) noexcept {
   if (suspect_) {
     const Step onward = step_between(*suspect_, sample);

@@ -28,20 +28,21 @@ struct WheelOdometrySettings {
   double max_yaw_rate_rad_s = 6;      // more is refused
   double max_acceleration_m_s2 = 10;  // of either wheel from sample to sample, over the resolution
   double gap_s = 0.5;                 // a longer pause between samples is a gap
-  double timeout_s = 0.3;             // without a sample for so long, odometry is stale
-  // Standard deviations of what the wheels do not tell: slip, wrong radius and track, uneven floor.
+  double timeout_s = 0.3;             // without a sample for this long, odometry is stale
+  // Standard deviations of what the wheels do not show: slip, wrong radius and track, uneven floor.
   double sigma_forward_per_sqrt_m = 0.015;
   double sigma_sideways_per_sqrt_m = 0.005;
   double sigma_yaw_per_sqrt_m = 0.005;
   double sigma_forward_per_sqrt_rad = 0.005;
   double sigma_yaw_per_sqrt_rad = 0.02;
-  // A gap: the path between two positions is not known (share of its length); speeds tell nothing.
+  // A gap: the path between two positions is not known (share of its length); speeds say nothing
+  // about it.
   double sigma_gap_per_m = 0.25;
   double sigma_gap_m_per_s = 0.5;
   double sigma_gap_rad_per_s = 0.5;
 };
 
-// The signals that the model reads, for filters on the bus; CANopen's frames come beside them.
+// The signals that the model reads, for filters on the bus; CANopen's frames come on top of them.
 std::span<const CanSignal> signals_of(const WheelOdometrySettings& settings) noexcept;
 
 // One step of dead reckoning: where base_link at to_ns stands, seen from base_link at from_ns, and
@@ -60,8 +61,7 @@ struct WheelOdometryCounters {
   std::uint64_t rejected = 0;  // refused: short, remote request, not finite, implausible, not newer
   std::uint64_t jumps = 0;     // of these: faster or more abrupt than the limits
   std::uint64_t gaps = 0;      // pauses longer than gap_s that an increment bridged
-  std::uint64_t rebased =
-      0;  // new starting points after a jump that stayed or a clock that ran back
+  std::uint64_t rebased = 0;   // new starting points: a jump that stayed, a clock that ran back
   std::uint64_t unwatched = 0;  // of the refused: while a watched CANopen node or SYNC was missing
   CanOpenCounters canopen;
 };
@@ -71,17 +71,18 @@ struct WheelOdometryCounters {
 // A sample is complete when all signals have come (one frame may carry several); its stamp is the
 // latest one's. Samples that are not newer than the last are refused, and so is a step faster or
 // more abrupt than the limits. When the next sample does not continue the last good one, but does
-// continue the refused one, the counter was reset or the clock was set back: odometry goes on from
-// there, and the motion that was lost appears as uncertainty. Counters may start anywhere and wrap
-// at any length. While a watched CANopen node or SYNC is missing, frames are refused, so that
-// odometry goes stale by its timeout; a node that starts anew counts as a counter reset. Real-time:
-// no allocation, bounded work per frame.   Threads: one.
+// continue the refused one, the counter was reset or the clock was set back: odometry continues
+// from there, and the lost motion appears as uncertainty. Counters may start anywhere and wrap at
+// any length. While a watched CANopen node or SYNC is missing, frames are refused, so that odometry
+// goes stale by its timeout; a node that restarts counts as a counter reset.
+// Real-time: no allocation, bounded work per frame.
+// Threads: one.
 class WheelOdometry {
  public:
   // The signals must be valid.
   explicit WheelOdometry(const WheelOdometrySettings& settings) noexcept;
 
-  // Takes a frame; returns an increment when it completed a sample. from_ns is the to_ns before.
+  // Takes a frame; returns an increment when it completed a sample. from_ns is the previous to_ns.
   std::optional<OdometryIncrement> take(const CanFrame& frame) noexcept;
 
   // No sample for timeout_s before now_ns, or none yet.

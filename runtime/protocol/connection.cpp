@@ -57,7 +57,7 @@ Result<const wire::Reply*> Connection::exchange(std::span<const std::byte> reque
   for (;;) {
     const Result<void> sent = socket_.send(request, descriptors);
     if (sent) break;
-    // Zoned may have told why it hangs up before it did.
+    // zoned may have said why before it hung up.
     if (sent.error().code == ErrorCode::kCancelled) break;
     if (sent.error().code != ErrorCode::kBusy) return sent.error();
     if (!socket_.wait(true, left_ms(end_ns)) && monotonic_ns() >= end_ns) return ErrorCode::kBusy;

@@ -13,29 +13,30 @@
 
 namespace zonepack {
 
-// A client's end of the socket: says hello, sends requests, waits for their replies, and hands over
-// what comes unasked. Errors: kNotFound (nobody listens), kCancelled (zoned closed), kBusy (no
-// answer in time), kBadVersion (zoned speaks another version; detail), kBadStructure, kIo.
+// A client's end of the socket: says hello, sends requests, waits for their replies, and passes on
+// unsolicited notices.
+// Errors: kNotFound (nobody listens), kCancelled (zoned closed), kBusy (no answer in time),
+// kBadVersion (zoned speaks another version; detail), kBadStructure, kIo.
 // Threads: one.
 class Connection {
  public:
-  // Told everything that nobody asked for (id 0); the reply is valid during the call.
+  // Called with every notice (id 0), which is valid during the call.
   using OnNotice = std::function<void(const wire::Reply&)>;
 
   static Result<Connection> open(const std::string& path, const std::string& client,
                                  int timeout_ms = 2000);
 
-  // What zoned told of itself and its map.
+  // What zoned said about itself and its map.
   const wire::Welcome& welcome() const noexcept {
     return *flatbuffers::GetRoot<wire::Reply>(welcome_.data())->body_as_Welcome();
   }
-  // The descriptor of that kind, which stays this object's; -1 when zoned gave none.
+  // The descriptor of that kind, which this object keeps; -1 when zoned gave none.
   int descriptor(wire::FdKind kind) const noexcept;
 
   void on_notice(OnNotice call) { on_notice_ = std::move(call); }
 
-  // Sends a request and waits for its reply, valid until the next call. A reply with a fault is no
-  // error here.
+  // Sends a request and waits for its reply, valid until the next call. A reply with a fault is not
+  // an error here.
   template <typename Body>
   Result<const wire::Reply*> ask(MessageBuilder& message, flatbuffers::Offset<Body> body,
                                  std::span<const int> descriptors = {},
@@ -44,7 +45,7 @@ class Connection {
     return exchange(message.request(last_id_, body, map_serial), descriptors);
   }
 
-  // Waits for something unasked and hands it over; true when something came.
+  // Waits for a notice and passes it on; true when one came.
   Result<bool> listen(int timeout_ms);
 
   const LocalSocket& socket() const noexcept { return socket_; }

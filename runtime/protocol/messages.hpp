@@ -9,11 +9,11 @@
 #include "platform/base/result.hpp"
 #include "runtime/protocol/protocol_generated.h"
 
-// Messages of the socket as bytes, for both ends. PROTOCOL.md tells what they mean.
+// Messages of the socket as bytes, for both ends. PROTOCOL.md says what they mean.
 namespace zonepack {
 
 inline constexpr std::uint32_t kProtocolVersion = 1;
-inline constexpr std::size_t kMostMessageBytes = 16 * 1024;  // either way
+inline constexpr std::size_t kMostMessageBytes = std::size_t{16} * 1024;  // either way
 inline constexpr std::uint32_t kMostNearest = 64;
 inline constexpr double kMostNearestRadius_m = 1000;
 inline constexpr std::size_t kMostRouteHint = 64;
@@ -21,8 +21,8 @@ inline constexpr float kMostPoseHz = 100;
 inline constexpr std::size_t kMostNameBytes = 64;
 
 // The request or reply in `bytes`, which it points into; `bytes` must be aligned to 8. kTooLarge,
-// or kBadStructure for what is not a whole message of this protocol: everything that it refers to
-// lies inside.
+// or kBadStructure for anything but a whole message of this protocol. Everything that a returned
+// message refers to lies inside `bytes`.
 Result<const wire::Request*> check_request(std::span<const std::byte> bytes) noexcept;
 Result<const wire::Reply*> check_reply(std::span<const std::byte> bytes) noexcept;
 

@@ -24,11 +24,11 @@ enum class BlockKind : std::uint8_t {
   kEnd = 4,
   kMap = 5,
 };
-// Blocks of this kind and above may be passed over by a reader that does not know them.
+// A reader may skip unknown blocks of this kind and above.
 inline constexpr std::uint8_t kFirstNoteBlock = 128;
 
 inline constexpr std::size_t kBlockHeaderBytes = 20;
-inline constexpr std::size_t kMostBlockBytes = 1024 * 1024;  // decoded
+inline constexpr std::size_t kMostBlockBytes = std::size_t{1024} * 1024;  // decoded
 
 struct RecordingBlockHeader {
   std::uint64_t checksum = 0;  // XXH3 of the header's other bytes and the stored ones
@@ -43,13 +43,13 @@ std::vector<std::byte> recording_header();
 // kBadMagic, kBadVersion.
 Result<void> check_recording_header(ByteSpan bytes) noexcept;
 
-// Makes a whole block of a content of 1 to kMostBlockBytes; replaces `into`.
+// Makes a whole block from a content of 1 to kMostBlockBytes; replaces `into`.
 void seal_block(BlockKind kind, ByteSpan content, std::vector<std::byte>& into);
 
 // Sizes within limits (kTooLarge), so that the stored bytes may be read.
 Result<RecordingBlockHeader> read_block_header(ByteSpan header) noexcept;
 
-// The content of a block that was read whole, header included; replaces `into`. kBadChecksum,
+// Extracts the content of a whole block, header included; replaces `into`. kBadChecksum,
 // kBadCompression, kBadVersion for another codec.
 Result<void> open_block(ByteSpan block, std::vector<std::byte>& into);
 

@@ -20,7 +20,7 @@ namespace zonepack {
 // Threads: push() by one, pop() and next_size() by another.
 class ByteRing {
  public:
-  // Bytes for messages and the four that each one's length takes; rounded up to a power of two.
+  // capacity: bytes for messages and four for the length of each; rounded up to a power of two.
   explicit ByteRing(std::size_t capacity)
       : capacity_(std::bit_ceil(capacity)), bytes_(std::make_unique<std::byte[]>(capacity_)) {
     ZP_REQUIRE(capacity >= 64 && capacity <= (std::size_t{1} << 30));
@@ -49,7 +49,7 @@ class ByteRing {
     return length;
   }
 
-  // Takes the next message, which must be there and as long as `into`.
+  // Takes the next message, which must exist and be as long as `into`.
   void pop(std::span<std::byte> into) noexcept {
     ZP_REQUIRE(into.size() == next_size());
     const std::size_t head = head_.load(std::memory_order_relaxed);

@@ -11,8 +11,9 @@
 #include "runtime/pack_format/file/checksum.hpp"
 
 // The numbers of recordings and saved states. Fixed ones are little endian; a varint holds seven
-// bits a byte, lowest first, the top bit set on all bytes but the last; signed ones are zigzag
-// (0, -1, 1, -2 ...). Real-time: no allocation.
+// bits per byte, lowest first, the top bit set on all bytes but the last; signed ones are zigzag
+// (0, -1, 1, -2 ...).
+// Real-time: no allocation.
 namespace zonepack {
 
 // Writes into a buffer of fixed size. What does not fit is left out and ok() is false from then on.
@@ -46,7 +47,8 @@ class ByteWriter {
     if (std::byte* const at = take(bytes.size())) std::memcpy(at, bytes.data(), bytes.size());
   }
 
-  // A length before what it counts: begin() leaves room for it, end() writes it and closes up.
+  // A length in front of what it counts: begin_counted() leaves room for it, end_counted() writes
+  // it and closes the gap.
   std::size_t begin_counted() noexcept {
     const std::size_t start = size_;
     take(kLongestVarint);
@@ -82,7 +84,7 @@ class ByteWriter {
   bool ok_ = true;
 };
 
-// Reads what ByteWriter wrote. Beyond the end, and from a varint over 64 bits, comes 0, and ok() is
+// Reads what ByteWriter wrote. Reading past the end, or a varint over 64 bits, gives 0, and ok() is
 // false from then on.
 class ByteReader {
  public:
@@ -149,7 +151,7 @@ class ByteReader {
   bool ok_ = true;
 };
 
-// Whether numbers that were read can be where a robot is, and how sure that is.
+// Whether numbers from a file can be a robot's pose and its standard deviations.
 inline bool is_place(const Pose2& pose, double sigma_m, double sigma_rad) noexcept {
   const auto within = [](double value, double least, double most) {
     return value >= least && value <= most;  // false for nan

@@ -14,8 +14,8 @@
 
 namespace zonepack {
 
-// How a run stood before one of its cycles: enough to go on from there as from a good guess, not
-// enough to decide exactly alike before the first fixes.
+// The state of a run before one of its cycles: enough to continue from there as from a good guess,
+// not enough to decide identically before the first fixes.
 struct Checkpoint {
   struct Held {
     ZoneId zone = kNoZone;
@@ -29,21 +29,22 @@ struct Checkpoint {
   Pose2 T_map_base;
   double sigma_m = 0, sigma_rad = 0;
   std::uint32_t map = 1;          // number in the run of the map in use
-  std::uint32_t offered_map = 0;  // that is to take its place; 0: none
+  std::uint32_t offered_map = 0;  // that is to replace it; 0: none
   ZoneId zone = kNoZone;          // the robot's own
   bool frozen = false;            // by command
   bool held = false;              // by the hold line
-  std::vector<Held> resident;     // used longest ago first
-  std::vector<ZoneId> pinned;     // asked for, beside those of the settings
+  std::vector<Held> resident;     // least recently used first
+  std::vector<ZoneId> pinned;     // by command, besides those of the settings
   std::vector<ZoneId> route;      // the hint in force
 };
 
-// The content of a checkpoint block. A map with more resident zones than a block has room for
-// loses those used longest ago.
+// The content of a checkpoint block. A map with more resident zones than a block has room for loses
+// the least recently used.
 std::vector<std::byte> write_checkpoint(const Checkpoint& checkpoint);
 Result<Checkpoint> read_checkpoint(ByteSpan content);
 
-// Keeps what a checkpoint needs beside the pose, from what the run tells: events and commands.
+// Tracks what a checkpoint needs besides the pose, from the run's events and inputs.
+//
 // Threads: one; not for the control thread.
 class RunMirror {
  public:
@@ -57,8 +58,8 @@ class RunMirror {
   // Another map is in use; its number.
   void change_map(std::uint32_t map, std::size_t zones);
 
-  // Fills resident, pinned, route, frozen, held and the map on offer, as far as they are of the map
-  // that `checkpoint` says.
+  // Fills resident, pinned, route, frozen, held and the map on offer, as far as they belong to the
+  // map of `checkpoint`.
   void describe(Checkpoint& checkpoint) const;
 
  private:

@@ -14,10 +14,10 @@
 // first with its own number and time, so that each block can be read without the others.
 namespace zonepack {
 
-// Puts cycles together until a block is worth storing.
+// Collects cycles until a block is worth storing.
 class CycleBlockWriter {
  public:
-  static constexpr std::size_t kGoodBytes = 64 * 1024;
+  static constexpr std::size_t kGoodBytes = std::size_t{64} * 1024;
 
   // period_ns: the usual time from cycle to cycle, which is not stored again with each.
   // most_cycle_bytes: of one cycle's records.
@@ -25,7 +25,7 @@ class CycleBlockWriter {
 
   bool empty() const noexcept { return out_.size() == 0; }
   bool full() const noexcept { return out_.size() >= kGoodBytes; }
-  // Whether the cycle carries on where the block stands; any does when it is empty.
+  // Whether the cycle follows the block's last one; any cycle does when the block is empty.
   bool continues(std::uint64_t cycle) const noexcept { return empty() || cycle == next_cycle_; }
 
   // The block must not be full, and the cycle must continue it.

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kCopyBytes = 64 * 1024;
+constexpr std::size_t kCopyBytes = std::size_t{64} * 1024;
 
 Error error_of(const std::error_code& code) { return {ErrorCode::kIo, code.value()}; }
 
@@ -101,7 +101,7 @@ void FlightRecorder::drop_oldest() {
   segments_.pop_front();
 }
 
-// A map is needed by what stands behind its offer, and by what begins while it is in use.
+// A map is needed by what follows its offer, and by segments that begin while it is in use.
 void FlightRecorder::drop_unused_maps() {
   if (segments_.empty()) return;
   const Segment& oldest = *segments_.front();
@@ -154,7 +154,7 @@ void FlightRecorder::append(ByteSpan block, std::uint64_t next_cycle) {
   next_cycle_ = next_cycle;
 }
 
-// Those that follow each other without a gap up to now.
+// The segments that follow each other without a gap up to now.
 std::deque<std::shared_ptr<FlightRecorder::Segment>> FlightRecorder::whole_segments() const {
   std::deque<std::shared_ptr<Segment>> whole;
   for (auto segment = segments_.rbegin(); segment != segments_.rend(); ++segment) {

@@ -17,19 +17,20 @@
 
 namespace zonepack {
 
-// The last part of a recording, always at hand: a ring of files of equal size, each beginning with
-// a checkpoint, of which the oldest goes when a new one begins. Maps that the run was offered have
-// files of their own, which go with the cycles that need them.
+// The latest part of a recording, always available: a ring of files of equal size, each beginning
+// with a checkpoint, the oldest of which goes when a new one begins. Maps that the run was offered
+// have files of their own, which go with the cycles that need them.
 //
-// The files stand in a folder and survive a crash, or have no names and go with the process. The
-// folder of the run before is kept beside it as NAME-previous.
+// The files are in a folder and survive a crash, or have no names and vanish with the process. The
+// folder of the previous run is kept next to it as NAME-previous.
+//
 // Threads: one that appends; dump() by any other. Not for the control thread.
 class FlightRecorder {
  public:
   static constexpr std::uint64_t kSegments = 8;
   static constexpr ByteCount kLeastBytes = kSegments * AppendFile::kSettleBytes;
 
-  // Keeps at most `bytes` of cycles in files named in `folder` (made when missing; its own old
+  // Keeps at most `bytes` of cycles in files named in `folder` (created when missing; its own old
   // files are moved), or without names in `folder` when `named` is false. kIo with errno.
   static Result<std::unique_ptr<FlightRecorder>> open(const std::string& folder, bool named,
                                                       ByteCount bytes,
@@ -37,7 +38,7 @@ class FlightRecorder {
 
   // Whether the next block should begin a segment. After an error it should.
   bool wants_segment() const noexcept;
-  // Begins a segment. After a gap what stands before it is no longer part of a dump.
+  // Begins a segment. After a gap, what precedes it is no longer part of a dump.
   void begin_segment(const Checkpoint& checkpoint, bool after_gap);
   // A map that cycle `cycle` was offered: its blocks. Before the cycle's own block.
   void add_map(std::uint32_t number, ByteSpan blocks, std::uint64_t cycle);
@@ -48,12 +49,12 @@ class FlightRecorder {
     std::uint64_t first_cycle = 0, next_cycle = 0;
     ByteCount bytes = 0;
   };
-  // Writes what is kept as one recording that appears whole; kNotFound when no cycle is kept.
+  // Writes what is kept as one recording that appears atomically; kNotFound when no cycle is kept.
   Result<Dumped> dump(const std::string& path) const;
-  // The same into an open file, from where it stands.
+  // The same into an open file, from its current offset.
   Result<Dumped> dump_to(int fd) const;
 
-  // Of all files now.
+  // The size of all files now.
   ByteCount kept_bytes() const;
   // How often a file could not be written, and why the last time; any thread.
   std::uint64_t failures() const;
@@ -93,7 +94,7 @@ class FlightRecorder {
   bool named_;
   ByteCount segment_bytes_;
   AppendFile preface_;
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards what follows
   std::deque<std::shared_ptr<Segment>> segments_;
   std::deque<std::shared_ptr<Map>> maps_;
   std::uint64_t segment_number_ = 0;

@@ -7,13 +7,13 @@ namespace zonepack {
 namespace {
 
 // A new member of these must be written and read below, or a recording would not hold it. (Not
-// Command::map: what is not of the map in use never becomes an input.)
+// Command::map: a command for another map never becomes an input.)
 static_assert(sizeof(Command) == 296 && sizeof(LoadResult) == 40 && sizeof(PoseCorrection) == 64 &&
               sizeof(LineEdge) == 16);
 
 constexpr std::uint8_t kExtended = 1, kFd = 2, kRtr = 4, kErrorFrame = 8, kHasFlags = 16;
 constexpr std::size_t kFrameRoom = 5 + 10 + 5 + 64;
-constexpr std::size_t kOtherRoom = 32 * 1024;
+constexpr std::size_t kOtherRoom = std::size_t{32} * 1024;
 constexpr std::size_t kLongestData = 64;
 
 std::size_t data_bytes(const CanFrame& frame) noexcept {

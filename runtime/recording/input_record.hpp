@@ -9,7 +9,7 @@
 #include "runtime/control/cycle.hpp"
 #include "runtime/recording/bytes.hpp"
 
-// What one cycle was given, as RECORDING.md lays it out under "Records".
+// The inputs of one cycle, laid out as RECORDING.md says under "Records".
 namespace zonepack {
 
 enum class RecordKind : std::uint8_t {
@@ -20,22 +20,22 @@ enum class RecordKind : std::uint8_t {
   kOffer = 5,
   kEdges = 6,
 };
-// Records of this kind and above may be passed over by a reader that does not know them; any other
-// unknown record is an input that would be missing.
+// A reader may skip unknown records of this kind and above; any other unknown record is an input
+// that would be missing.
 inline constexpr std::uint8_t kFirstNoteKind = 128;
 
 inline constexpr std::size_t kMostRecordedFrames = 4096;
 inline constexpr std::size_t kMostRecordedCorrections = 4096;
 inline constexpr std::size_t kMostRecordedLoads = 1024;
 inline constexpr std::size_t kMostRecordedEdges = 1024;
-inline constexpr std::size_t kMostCycleBytes = 512 * 1024;  // of one cycle's records
+inline constexpr std::size_t kMostCycleBytes = std::size_t{512} * 1024;  // of one cycle's records
 
-// Room that the records of any cycle with so many frames, full commands and up to 64 corrections,
-// loads and edges take.
+// Room for the records of any cycle with at most that many frames, full commands and up to 64
+// corrections, loads and edges.
 std::size_t record_room(std::uint32_t most_frames) noexcept;
 
 // Writes the records of a cycle; nothing for a cycle without input. ok() of `out` says whether they
-// fitted. Slots of loads are recorded by their number only.
+// fit. Of a load's slots only the count is recorded.
 // Real-time: no allocation; work bounded by the input.
 void write_records(const CycleInput& input, ByteWriter& out) noexcept;
 
@@ -56,7 +56,7 @@ struct RecordedInput {
 };
 
 // Replaces all but now_ns, to which stamps are relative. kBadStructure for what write_records does
-// not write, kBadVersion (detail: the kind) for an input of a kind that is not known.
+// not write, kBadVersion (detail: the kind) for an input of an unknown kind.
 Result<void> read_records(ByteSpan records, RecordedInput& into);
 
 }  // namespace zonepack

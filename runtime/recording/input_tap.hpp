@@ -13,7 +13,7 @@
 
 namespace zonepack {
 
-// A cycle as it leaves the tap: what it was given, and how the run stood before it.
+// A cycle as it leaves the tap: its inputs, and the state of the run before it.
 struct TappedCycle {
   struct Head {
     std::uint64_t cycle = 0;  // from 0
@@ -32,20 +32,20 @@ struct TappedCycle {
 
 // Where the control thread leaves the inputs of each cycle, for a slower thread to record.
 //
-// A cycle that finds no room, or is larger than expected, is lost and counted; the reader of the
-// recording sees the gap in the numbers of the cycles.
-// Real-time: on_inputs() neither allocates nor waits; its work is bounded by the input.   Threads:
-// on_inputs() by the control thread, next() by one other, lost() by any.
+// A cycle that finds no room, or is larger than expected, is lost and counted; a reader of the
+// recording sees the gap in the cycle numbers.
+// Real-time: on_inputs() neither allocates nor waits; its work is bounded by the input.
+// Threads: on_inputs() by the control thread, next() by one other, lost() by any.
 class InputTap final : public InputSink {
  public:
   // Some seconds of a busy bus at 1 kHz, half a minute of a quiet one at 100 Hz.
-  static constexpr std::size_t kRingBytes = 512 * 1024;
+  static constexpr std::size_t kRingBytes = std::size_t{512} * 1024;
 
   // most_frames: given to one cycle.
   explicit InputTap(std::uint32_t most_frames, std::size_t ring_bytes = kRingBytes);
 
-  // Looks at how the last cycle left the run, for checkpoints; before the first cycle. `state` must
-  // outlive the calls of on_inputs().
+  // Reads, for checkpoints, the state in which the last cycle left the run; call before the first
+  // cycle. `state` must outlive the calls of on_inputs().
   void follow(const CycleState& state) noexcept { state_ = &state; }
 
   void on_inputs(std::uint64_t cycle, const CycleInput& input,
@@ -54,7 +54,7 @@ class InputTap final : public InputSink {
   // The oldest cycle not yet taken; its records are valid until the next call. False: none.
   bool next(TappedCycle& cycle);
 
-  // The most that records of a next() can take.
+  // The most bytes of records that next() can return.
   std::size_t most_cycle_bytes() const noexcept { return scratch_.size(); }
 
   std::uint64_t lost() const noexcept override { return lost_.load(std::memory_order_relaxed); }

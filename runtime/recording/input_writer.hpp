@@ -19,9 +19,10 @@ namespace zonepack {
 // Carries the inputs of cycles from the tap to the files.
 //
 // Call drain() several times a second, so that the tap does not overflow. What is older than
-// kMostWait_ns is written: a crash costs no more. Memory: two blocks, a quarter of a megabyte
-// unless cycles may take hundreds of frames. Threads: one; not for the control thread. Allocates in
-// the constructor, and for checkpoints.
+// kMostWait_ns is written: a crash costs no more than that.
+//
+// Memory: two blocks, a quarter of a megabyte unless cycles may take hundreds of frames.
+// Threads: one; not for the control thread. Allocates in the constructor, and for checkpoints.
 class InputWriter {
  public:
   static constexpr std::int64_t kMostWait_ns = 1'000'000'000;
@@ -30,13 +31,13 @@ class InputWriter {
   InputWriter(InputTap& tap, std::int64_t period_ns, std::size_t zones, RecordingFile* file,
               FlightRecorder* flight);
 
-  // For checkpoints: what the run tells, as it comes.
+  // For checkpoints: the run's events, as they come.
   void on_event(const Event& event) { mirror_.on_event(event); }
 
-  // The map that events are of from here on.
+  // The map that events belong to from here on.
   void change_map(std::uint32_t number, std::size_t zones) { mirror_.change_map(number, zones); }
 
-  // A map that a cycle to come will be offered; any thread.
+  // A map that a future cycle will be offered; any thread.
   void add_map(const RecordedMap& map);
 
   // Takes what the tap holds; writes the blocks that became full or old. now_ns: CLOCK_MONOTONIC.
@@ -44,7 +45,7 @@ class InputWriter {
   // The same, and writes what is left.
   void flush();
 
-  // How the recording stands, for RecordingFile::finish(): after flush().
+  // The recording's end for RecordingFile::finish(), after flush().
   RecordingEnd end() const;
   // Cycles that are missing from the recording, or from its end; any thread.
   std::uint64_t lost() const noexcept;
@@ -66,7 +67,7 @@ class InputWriter {
   std::int64_t block_began_ns_ = 0;  // CLOCK_MONOTONIC
   std::int64_t start_ns_ = 0;        // the run's clock, of cycle 0
   std::uint64_t next_cycle_ = 0;
-  std::mutex mutex_;                                                      // of what follows
+  std::mutex mutex_;                                                      // guards what follows
   std::vector<std::pair<std::uint32_t, std::vector<std::byte>>> coming_;  // maps as blocks
 };
 

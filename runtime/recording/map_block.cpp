@@ -10,7 +10,7 @@
 namespace zonepack {
 namespace {
 
-constexpr std::size_t kMapBlockContent = 512 * 1024;
+constexpr std::size_t kMapBlockContent = std::size_t{512} * 1024;
 constexpr std::size_t kMapHeadRoom = 64;
 constexpr std::uint32_t kFirstOfAnOffer = 2;
 constexpr std::uint64_t kMostMapBytes = kMaxManifestBytes + kMiB;

@@ -21,13 +21,13 @@ struct RecordedMap {
 // The blocks that hold it, joined: one or more, all of the kind "map".
 std::vector<std::byte> write_map(const RecordedMap& map);
 
-// The maps of a recording, put together from the contents of its map blocks as they come.
+// The maps of a recording, assembled from the contents of its map blocks as they come.
 class RecordedMaps {
  public:
-  // kBadStructure: not what write_map() writes; kTooLarge. What came before stays.
+  // kBadStructure: not what write_map() writes; kTooLarge. Maps added before stay.
   Result<void> add(ByteSpan content);
 
-  // Null when it did not come, or not whole.
+  // Null when it is missing or incomplete.
   const RecordedMap* find(std::uint32_t number) const noexcept;
 
  private:

@@ -24,7 +24,7 @@ enum class Field : std::uint8_t {
   kDbc = 10,
 };
 
-constexpr std::size_t kBlockContent = 512 * 1024;
+constexpr std::size_t kBlockContent = std::size_t{512} * 1024;
 constexpr std::size_t kPrefaceRoom = 1024;
 
 ByteSpan bytes_of(std::string_view text) noexcept { return std::as_bytes(std::span(text)); }
@@ -76,7 +76,7 @@ void put_all(const RecordingPreface& preface, ByteWriter& out) {
   for (const std::string& name : preface.terms.pinned) put(out, Field::kPinned, bytes_of(name));
   if (!preface.start) return;
   put(out, Field::kStart, [&](ByteWriter& field) {
-    const RecordedStart& start = *preface.start;
+    const RunStart& start = *preface.start;
     field.i64(start.now_ns);
     field.f64(start.T_map_base.x_m);
     field.f64(start.T_map_base.y_m);
@@ -104,8 +104,8 @@ bool read_terms(ByteReader in, MapTerms& terms) {
          terms.lease_ns <= 1000 * kHour_ns;
 }
 
-bool read_start(ByteReader in, std::optional<RecordedStart>& into) {
-  RecordedStart start;
+bool read_start(ByteReader in, std::optional<RunStart>& into) {
+  RunStart start;
   start.now_ns = in.i64();
   start.T_map_base = {in.f64(), in.f64(), in.f64()};
   const bool has_sigma = in.u8() != 0;

@@ -12,36 +12,30 @@
 #include "runtime/pack_format/limits.hpp"
 #include "runtime/recording/bytes.hpp"
 #include "runtime/run/map_model.hpp"
+#include "runtime/run/run_start.hpp"
 
 namespace zonepack {
 
-// A start that the cycle was told before its first run: Cycle::start_at().
-struct RecordedStart {
-  std::int64_t now_ns = 0;
-  Pose2 T_map_base;
-  std::optional<double> sigma_m, sigma_rad;  // both or none: as the settings say
-};
-
-// What a run decides on beside the inputs of its cycles, so that a recording needs neither map nor
+// What a run decides on besides the inputs of its cycles, so that a recording needs neither map nor
 // settings file.
 struct RecordingPreface {
   std::string program;              // version that recorded
-  std::int64_t realtime_ns = 0;     // CLOCK_REALTIME at the start; 0: not told
+  std::int64_t realtime_ns = 0;     // CLOCK_REALTIME at the start; 0: unknown
   std::string settings_path;        // for messages, and what its relative paths refer to
   std::string settings;             // the file's text
   std::string dbc;                  // the text of the file that can.dbc names; empty: none
   std::string map_folder;           // for messages
   std::vector<std::byte> manifest;  // the file's bytes
   MapTerms terms;                   // as the run had them, command line included
-  std::optional<RecordedStart> start;
+  std::optional<RunStart> start;
 };
 
-// Hands over the blocks that hold the preface, in order.
+// Passes the blocks that hold the preface to take_block, in order.
 void write_preface(const RecordingPreface& preface,
                    const std::function<void(ByteSpan block)>& take_block);
 
-// Reads the contents of these blocks, joined. kBadStructure; kBadVersion (detail: the field) for a
-// field that is not known.
+// Reads the contents of these blocks, joined. kBadStructure; kBadVersion (detail: the field) for an
+// unknown field.
 Result<RecordingPreface> read_preface(ByteSpan content);
 
 // Contents longer than this are refused: the largest manifest, and room for the texts.

@@ -15,7 +15,8 @@ namespace zonepack {
 // A recording as it is written: every block as soon as it is there, so that a crash at any moment
 // leaves a recording of all blocks before it.
 //
-// After an error nothing more is written: what stands there stays a valid beginning.
+// After an error nothing more is written: the file remains a valid beginning.
+//
 // Threads: one; not for the control thread.
 class RecordingFile {
  public:

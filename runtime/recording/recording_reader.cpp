@@ -13,7 +13,7 @@
 namespace zonepack {
 namespace {
 
-std::string told(const Error& error) {
+std::string error_text(const Error& error) {
   return std::string(to_string(error.code)) + " (" + std::to_string(error.detail) + ")";
 }
 
@@ -34,25 +34,31 @@ bool has_sane_times(const RecordedInput& input) {
                              [](const LineEdge& edge) { return is_time(edge.stamp_ns); });
 }
 
+bool is_block(const Result<std::optional<std::uint8_t>>& block, BlockKind kind) {
+  return block && *block == static_cast<std::uint8_t>(kind);
+}
+
 }  // namespace
 
-std::optional<RecordingReader> RecordingReader::open(const std::string& path, std::string& fault) {
+Outcome<RecordingReader> RecordingReader::open(const std::string& path) {
   RecordingReader reader(path);
-  if (!reader.open_files(fault) || !reader.read_start(fault)) return std::nullopt;
+  if (const auto opened = reader.open_files(); !opened) return opened.error();
+  if (const auto started = reader.read_start(); !started) return started.error();
   return reader;
 }
 
-bool RecordingReader::open_files(std::string& fault) {
+Outcome<void> RecordingReader::open_files() {
   std::vector<std::string> names = {path_};
   std::error_code error;
   if (std::filesystem::is_directory(path_, error)) names = flight_files(path_);
   for (const std::string& name : names) {
     Result<StorageFile> file = StorageFile::open(name);
     if (!file) {
-      fault = name + ": cannot be read: " + told(file.error()) +
+      return failure(
+          name + ": cannot be read: " + error_text(file.error()) +
               "; expected a recording of zoned run --record or zonectl dump, or the folder of a "
-              "flight recorder";
-      return false;
+              "flight recorder",
+          file.error().code);
     }
     files_.push_back(std::move(file).value());
   }
@@ -62,101 +68,86 @@ bool RecordingReader::open_files(std::string& fault) {
   Result<void> checked = files_.front().read_at(0, bytes);
   if (checked) checked = check_recording_header(bytes);
   if (!checked) {
-    fault = names.front() + ": not a recording that can be read: " + told(checked.error()) +
-            "; expected format version " + std::to_string(kRecordingMajor);
-    return false;
+    return failure(names.front() +
+                       ": not a recording that can be read: " + error_text(checked.error()) +
+                       "; expected format version " + std::to_string(kRecordingMajor),
+                   checked.error().code);
   }
   offset_ = kRecordingHeaderBytes;
-  return true;
+  return {};
 }
 
-std::optional<std::uint8_t> RecordingReader::read_block(Error& error) {
-  error = {};
+Result<std::optional<std::uint8_t>> RecordingReader::read_block() {
   while (file_ < files_.size() && offset_ >= files_[file_].size()) {
     ++file_;
     offset_ = 0;
   }
-  if (file_ == files_.size()) return std::nullopt;
-  const auto truncated = [&] {
-    error = {ErrorCode::kTruncated, static_cast<std::int64_t>(offset_)};
-    return std::nullopt;
-  };
+  if (file_ == files_.size()) return std::optional<std::uint8_t>();
+  const Error truncated{ErrorCode::kTruncated, static_cast<std::int64_t>(offset_)};
   const StorageFile& file = files_[file_];
   const std::uint64_t left = file.size() - offset_;
-  if (left < kBlockHeaderBytes) return truncated();
+  if (left < kBlockHeaderBytes) return truncated;
   stored_.resize(kBlockHeaderBytes);
-  if (const auto read = file.read_at(offset_, stored_); !read) {
-    error = read.error();
-    return std::nullopt;
-  }
+  if (const auto read = file.read_at(offset_, stored_); !read) return read.error();
   const Result<RecordingBlockHeader> header = read_block_header(stored_);
-  if (!header) {
-    error = header.error();
-    return std::nullopt;
-  }
-  if (header->stored_size > left - kBlockHeaderBytes) return truncated();
+  if (!header) return header.error();
+  if (header->stored_size > left - kBlockHeaderBytes) return truncated;
   stored_.resize(kBlockHeaderBytes + header->stored_size);
   Result<void> done = file.read_at(offset_, stored_);
   if (done) done = open_block(stored_, block_);
-  if (!done) {
-    error = done.error();
-    return std::nullopt;
-  }
+  if (!done) return done.error();
   offset_ += stored_.size();
-  return header->kind;
+  return std::optional(header->kind);
 }
 
-bool RecordingReader::read_start(std::string& fault) {
+Outcome<void> RecordingReader::read_start() {
   std::vector<std::byte> content;
-  Error error;
-  auto kind = read_block(error);
-  while (kind == static_cast<std::uint8_t>(BlockKind::kPreface)) {
+  auto block = read_block();
+  while (is_block(block, BlockKind::kPreface)) {
     if (content.size() + block_.size() > kMostPrefaceBytes) break;
     content.insert(content.end(), block_.begin(), block_.end());
-    kind = read_block(error);
+    block = read_block();
   }
   Result<RecordingPreface> preface = read_preface(content);
   if (!preface) {
-    if (error.code == ErrorCode::kOk) error = preface.error();
-    fault = path_ + ": its settings and map cannot be read: " + told(error) +
-            "; the file is damaged, or was cut before its first cycle";
-    return false;
+    const Error error = block ? preface.error() : block.error();
+    return failure(path_ + ": its settings and map cannot be read: " + error_text(error) +
+                       "; the file is damaged, or was cut before its first cycle",
+                   error.code);
   }
   preface_ = std::move(preface).value();
   if (preface_.start && !is_time(preface_.start->now_ns)) {
-    fault = path_ + ": its start is at no time that can be; the file is damaged";
-    return false;
+    return failure(path_ + ": its start is at no time that can be; the file is damaged");
   }
   content = {};
-  for (;; kind = read_block(error)) {
-    if (kind == static_cast<std::uint8_t>(BlockKind::kMap)) {
-      (void)maps_.add(block_);  // one that is not whole is missing where it is needed
+  for (;; block = read_block()) {
+    if (is_block(block, BlockKind::kMap)) {
+      (void)maps_.add(block_);  // a damaged map counts as missing, reported where it is needed
       continue;
     }
-    if (kind != static_cast<std::uint8_t>(BlockKind::kCheckpoint)) break;
+    if (!is_block(block, BlockKind::kCheckpoint)) break;
     Result<Checkpoint> checkpoint = read_checkpoint(block_);
     if (checkpoint && is_time(checkpoint->now_ns) && is_time(checkpoint->start_ns))
       checkpoint_ = std::move(checkpoint).value();
   }
-  if (kind == static_cast<std::uint8_t>(BlockKind::kCycles)) {
+  if (is_block(block, BlockKind::kCycles)) {
     cycles_ = CycleBlockReader(block_);
     next_cycle_ = cycles_.next_cycle();
-  } else if (kind == static_cast<std::uint8_t>(BlockKind::kEnd)) {
+  } else if (is_block(block, BlockKind::kEnd)) {
     if (auto end = read_end(block_)) end_ = std::move(end).value();
     stop("holds no cycle", true);
   } else {
-    stop("ends before its first cycle: " + told(error));
+    stop("ends before its first cycle: " + error_text(block.error()));
   }
   last_ns_ = std::numeric_limits<std::int64_t>::min();
   next_cycle_first_ = next_cycle_;
   if (next_cycle_ == 0) {
     checkpoint_.reset();
   } else if (!checkpoint_ || checkpoint_->cycle != next_cycle_) {
-    fault = path_ + ": begins with cycle " + std::to_string(next_cycle_) +
-            " without saying how the run stood there; its beginning is missing";
-    return false;
+    return failure(path_ + ": begins with cycle " + std::to_string(next_cycle_) +
+                   " without saying how the run stood there; its beginning is missing");
   }
-  return true;
+  return {};
 }
 
 void RecordingReader::stop(const std::string& why, bool complete) {
@@ -165,19 +156,21 @@ void RecordingReader::stop(const std::string& why, bool complete) {
   note_ = path_ + ": " + why;
 }
 
-// Makes cycles_ stand before the next cycle; false at the end.
+// Positions cycles_ before the next cycle; false at the end.
 bool RecordingReader::next_block() {
   const auto ends = [&] { return "ends after cycle " + std::to_string(next_cycle_ - 1); };
   for (;;) {
-    Error error;
-    const auto kind = read_block(error);
-    if (!kind) {
-      stop(error.code == ErrorCode::kOk || error.code == ErrorCode::kTruncated
-               ? ends() + " without an end mark: the run was killed, or the file was cut"
-               : ends() + ", where the file is damaged: " + told(error));
+    const auto block = read_block();
+    if (block ? !block->has_value() : block.error().code == ErrorCode::kTruncated) {
+      stop(ends() + " without an end mark: the run was killed, or the file was cut");
       return false;
     }
-    switch (static_cast<BlockKind>(*kind)) {
+    if (!block) {
+      stop(ends() + ", where the file is damaged: " + error_text(block.error()));
+      return false;
+    }
+    const std::uint8_t kind = **block;
+    switch (static_cast<BlockKind>(kind)) {
       case BlockKind::kCycles:
         cycles_ = CycleBlockReader(block_);
         if (cycles_.next_cycle() == next_cycle_) return true;
@@ -192,7 +185,7 @@ bool RecordingReader::next_block() {
       case BlockKind::kEnd: {
         Result<RecordingEnd> end = read_end(block_);
         if (!end) {
-          stop(ends() + ", where the file is damaged: " + told(end.error()));
+          stop(ends() + ", where the file is damaged: " + error_text(end.error()));
           return false;
         }
         end_ = std::move(end).value();
@@ -206,8 +199,8 @@ bool RecordingReader::next_block() {
         return false;
       }
       default:
-        if (*kind >= kFirstNoteBlock) continue;
-        stop(ends() + ": what follows (kind " + std::to_string(*kind) + ") needs a newer zoned");
+        if (kind >= kFirstNoteBlock) continue;
+        stop(ends() + ": what follows (kind " + std::to_string(kind) + ") needs a newer zoned");
         return false;
     }
   }
@@ -221,7 +214,7 @@ const RecordedInput* RecordingReader::next() {
   Result<void> read = cycles_.next(input_);
   if (read && (input_.now_ns < last_ns_ || !has_sane_times(input_))) read = ErrorCode::kBadValue;
   if (!read) {
-    stop("cycle " + std::to_string(next_cycle_) + " cannot be read: " + told(read.error()));
+    stop("cycle " + std::to_string(next_cycle_) + " cannot be read: " + error_text(read.error()));
     return nullptr;
   }
   last_ns_ = input_.now_ns;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "platform/storage.hpp"
 #include "runtime/recording/checkpoint.hpp"
 #include "runtime/recording/cycle_block.hpp"
@@ -15,18 +16,19 @@
 
 namespace zonepack {
 
-// Reads a recording from its first cycle to the last that can be vouched for. Whatever the bytes
-// are, the cycles given are whole, checked, and follow each other without a gap.
+// Reads a recording from its first cycle to the last sound one.
 //
-// Memory: the preface, the maps and one block.   Threads: one; allocates.
+// Invariant: whatever the bytes are, the cycles it returns are whole, checked and without a gap.
+// Memory: the preface, the maps and one block.
+// Threads: one; allocates.
 class RecordingReader {
  public:
-  // A recording, or the folder of a flight recorder. Nothing when it cannot be read up to its first
-  // cycle; `fault` says why in a complete message.
-  static std::optional<RecordingReader> open(const std::string& path, std::string& fault);
+  // A recording, or the folder of a flight recorder. Fails when it cannot be read up to its first
+  // cycle.
+  static Outcome<RecordingReader> open(const std::string& path);
 
   const RecordingPreface& preface() const noexcept { return preface_; }
-  // Where the run stood before the first cycle; nothing when that is cycle 0.
+  // The state of the run before the first cycle; nothing when that is cycle 0.
   const std::optional<Checkpoint>& checkpoint() const noexcept { return checkpoint_; }
   std::uint64_t first_cycle() const noexcept { return next_cycle_first_; }
 
@@ -41,22 +43,22 @@ class RecordingReader {
   // After the last cycle. Why it is the last, when the run did not end there: a complete message;
   // empty when it did.
   const std::string& note() const noexcept { return note_; }
-  // Whether cycles that were run are missing: cut off, damaged or lost.
+  // False when cycles of the run are missing: cut off, damaged or lost.
   bool complete() const noexcept { return complete_; }
   const std::optional<RecordingEnd>& end() const noexcept { return end_; }
 
  private:
   explicit RecordingReader(std::string path) : path_(std::move(path)) {}
 
-  bool open_files(std::string& fault);
-  bool read_start(std::string& fault);
-  // The next block's content in block_; nothing at the end of the files.
-  std::optional<std::uint8_t> read_block(Error& error);
+  Outcome<void> open_files();
+  Outcome<void> read_start();
+  // Reads the next block into block_ and returns its kind; nothing at the end of the files.
+  Result<std::optional<std::uint8_t>> read_block();
   bool next_block();
   void stop(const std::string& why, bool complete = false);
 
   std::string path_;
-  std::vector<StorageFile> files_;  // read one after the other
+  std::vector<StorageFile> files_;  // read one after another
   std::size_t file_ = 0;
   std::uint64_t offset_ = 0;
   RecordingPreface preface_;

@@ -7,7 +7,7 @@
 namespace zonepack {
 
 PackFiller::PackFiller(const Catalog& catalog, std::uint32_t slots)
-    : catalog_(catalog),
+    : catalog_(&catalog),
       arena_(slots, kSlotBytes),
       read_buffer_(kReadBufferBytes),
       noted_(catalog.zones.size()) {
@@ -22,8 +22,15 @@ Result<void> PackFiller::fill(ZoneId zone, std::span<const SlotIndex> slots) {
   return loaded;
 }
 
+void PackFiller::use(const Catalog& catalog) {
+  if (&catalog == catalog_) return;
+  catalog_ = &catalog;
+  noted_.assign(catalog.zones.size(), false);
+}
+
 Result<void> PackFiller::load(ZoneId zone) {
-  Result<ZoneLoad> load = ZoneLoad::begin(catalog_, zone, places_, read_buffer_, ReadMode::kCached);
+  Result<ZoneLoad> load =
+      ZoneLoad::begin(*catalog_, zone, places_, read_buffer_, ReadMode::kCached);
   if (!load) return load.error();
   for (;;) {
     const Result<bool> more = load->step();
@@ -35,7 +42,7 @@ Result<void> PackFiller::load(ZoneId zone) {
 void PackFiller::note(ZoneId zone, Error error) {
   if (noted_[zone]) return;
   noted_[zone] = true;
-  faults_.push_back(load_fault(catalog_, zone, error));
+  faults_.push_back(load_fault(*catalog_, zone, error));
 }
 
 }  // namespace zonepack

@@ -14,9 +14,11 @@ namespace zonepack {
 // Loads zones from their packs into an arena, as the robot does, so that damage shows.
 class PackFiller final : public ZoneFiller {
  public:
+  // The catalog must outlive its use.
   PackFiller(const Catalog& catalog, std::uint32_t slots);
 
   Result<void> fill(ZoneId zone, std::span<const SlotIndex> slots) override;
+  void use(const Catalog& catalog) override;
 
   // A complete message for each zone whose pack could not be loaded, once.
   const std::vector<std::string>& faults() const noexcept { return faults_; }
@@ -25,7 +27,7 @@ class PackFiller final : public ZoneFiller {
   Result<void> load(ZoneId zone);
   void note(ZoneId zone, Error error);
 
-  const Catalog& catalog_;
+  const Catalog* catalog_;
   Arena arena_;
   std::vector<std::byte> read_buffer_;
   std::vector<std::byte*> places_;

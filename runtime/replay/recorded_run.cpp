@@ -3,101 +3,70 @@
 
 #include <algorithm>
 #include <memory>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "platform/base/require.hpp"
-#include "runtime/control/map_switcher.hpp"
 #include "runtime/replay/recorded_loader.hpp"
-#include "runtime/replay/timed_loader.hpp"
-#include "runtime/run/event_log.hpp"
-#include "runtime/run/map_version.hpp"
+#include "runtime/run/modelled_loader.hpp"
+#include "runtime/run/run.hpp"
 #include "runtime/run/run_inputs.hpp"
-#include "runtime/run/run_result.hpp"
-#include "runtime/run/run_statistics.hpp"
 
 namespace zonepack {
 namespace {
 
-// A map that the run was offered.
-std::shared_ptr<MapVersion> map_of(const RecordingReader& recording, const Settings& settings,
-                                   const MapTerms& terms, std::uint32_t number,
-                                   std::string& fault) {
+// The catalog of a map that the run was offered.
+Outcome<Catalog> catalog_of(const RecordingReader& recording, const Settings& settings,
+                            std::uint32_t number) {
   const std::string which = "map " + std::to_string(number) + ", which the run was offered, ";
   const RecordedMap* const recorded = recording.map(number);
   if (recorded == nullptr) {
-    fault = which + "is not in the recording";
-    return nullptr;
+    return failure(which + "is not in the recording", ErrorCode::kNotFound);
   }
   auto catalog = Catalog::read(recorded->manifest, recorded->folder, settings.memory.payload.mask);
   if (!catalog) {
-    fault = which + "cannot be used: " + to_string(catalog.error().code);
-    return nullptr;
+    return failure(which + "cannot be used: " + to_string(catalog.error().code),
+                   catalog.error().code);
   }
-  return MapVersion::make(number, std::move(catalog).value(), terms, fault);
+  return std::move(catalog).value();
 }
 
-// All that one run needs, in the order in which the parts refer to each other.
-class RecordedDrive final : public EventSink {
+// Feeds a recording to a run.
+class RecordedDrive {
  public:
-  RecordedDrive(RecordingReader& recording, const RecordedRun& run, std::shared_ptr<MapVersion> map)
+  RecordedDrive(RecordingReader& recording, const RecordedRun& recorded,
+                const std::string& events_path, std::shared_ptr<MapVersion> map)
       : recording_(recording),
-        settings_(run.settings),
-        terms_(map->model().terms_of_next(recording.preface().terms)),
+        settings_(recorded.settings),
         exact_(!recording.checkpoint()),
-        first_(map),
-        maps_in_use_{map},
         recorded_(map->catalog()),
-        timed_(map->model().work, terms_.rates),
-        follower_(
-            map, [this](std::uint32_t number) { return find(number); },
-            [this](const MapVersion& next) {
-              recorder_.change_map(next.model().graph, next.model().needs, next.model().limits);
-            }),
-        log_([this](ZoneId zone) {
-          return std::string_view(follower_.map().model().graph.name(zone));
-        }),
-        recorder_(map->model().graph, map->model().needs, nullptr, terms_.period_ns,
-                  map->model().limits, log_) {
-    recorder_.keep_trace();
-  }
+        modelled_(map->catalog(), recording.preface().terms.rates),
+        run_({.cycle = cycle_config(settings_),
+              .terms = recording.preface().terms,
+              .events = events_path,
+              .keep_trace = true},
+             std::move(map)) {}
 
-  void on_event(const Event& event) noexcept override {
-    follower_.follow(event.map);
-    recorder_.on_event(event);
-  }
-
-  std::optional<RecordedRunResult> drive(const std::string& events_path, std::string& fault);
+  Outcome<RecordedRunResult> drive();
 
  private:
-  ZoneLoader& loader() { return exact_ ? static_cast<ZoneLoader&>(recorded_) : timed_; }
-  MapVersion& first() { return *first_; }
-  std::shared_ptr<MapVersion> find(std::uint32_t number) const;
-  bool prepare(MapVersion& map, std::string& fault);
-  bool begin_with(const MapVersion& map, std::string& fault);
-  void begin();
+  ZoneLoader& loader() { return exact_ ? static_cast<ZoneLoader&>(recorded_) : modelled_; }
+  Outcome<void> begin();
   void go_on_from(const Checkpoint& checkpoint);
-  bool run_cycles(std::string& fault);
-  bool offer(std::uint32_t number, std::string& fault);
-  bool answers(const RecordedInput& input, std::string& fault);
-  bool take_loads(const RecordedInput& input, std::string& fault);
+  Outcome<void> run_cycles();
+  Outcome<void> offer(std::uint32_t number);
+  Outcome<void> answer(const RecordedInput& input);
+  Outcome<void> take_loads(const RecordedInput& input);
   void take_commands(const RecordedInput& input);
   std::span<const LineEdge> take_edges(const RecordedInput& input);
-  std::optional<RecordedRunResult> result(const std::string& events_path, std::string& fault);
+  Outcome<RecordedRunResult> result();
 
   RecordingReader& recording_;
   const Settings& settings_;
-  const MapTerms terms_;  // of maps that the run is offered
   const bool exact_;
-  const std::shared_ptr<MapVersion> first_;               // drawings stay on its ground
-  std::vector<std::shared_ptr<MapVersion>> maps_in_use_;  // in use, on offer
   RecordedLoader recorded_;
-  TimedLoader timed_;  // from a checkpoint
-  MapFollower follower_;
-  EventLog log_;
-  RunStatistics recorder_;
-  std::optional<MapSwitcher> maps_;
+  ModelledLoader modelled_;  // from a checkpoint
+  Run run_;
   std::vector<LoadResult> loads_;  // of the cycle
   std::vector<Command> commands_;  // of the cycle
   std::vector<Command> waiting_;   // for the cycles to come
@@ -106,34 +75,26 @@ class RecordedDrive final : public EventSink {
   std::uint64_t frames_ = 0;
 };
 
-std::shared_ptr<MapVersion> RecordedDrive::find(std::uint32_t number) const {
-  const auto found = std::ranges::find(maps_in_use_, number, &MapVersion::number);
-  return found == maps_in_use_.end() ? nullptr : *found;
-}
-
-bool RecordedDrive::prepare(MapVersion& map, std::string& fault) {
-  return map.prepare(cycle_config(settings_), loader(), *this, nullptr, fault);
-}
-
-void RecordedDrive::begin() {
-  const std::optional<RecordedStart>& start = recording_.preface().start;
-  if (!start) return;
-  if (start->sigma_m && start->sigma_rad) {
-    first().cycle().start_at(start->now_ns, start->T_map_base, *start->sigma_m, *start->sigma_rad);
-  } else {
-    first().cycle().start_at(start->now_ns, start->T_map_base);
+Outcome<void> RecordedDrive::begin() {
+  if (exact_) {
+    if (const auto& start = recording_.preface().start) run_.start_at(*start);
+    return {};
   }
+  const Checkpoint& checkpoint = *recording_.checkpoint();
+  go_on_from(checkpoint);
+  if (checkpoint.offered_map == 0) return {};
+  return offer(checkpoint.offered_map);
 }
 
 void RecordedDrive::go_on_from(const Checkpoint& checkpoint) {
+  const MapInUse& map = run_.switcher().map();
   for (const Checkpoint::Held& held : checkpoint.resident) {
-    const std::vector<ZoneNeed>& needs = first().model().needs;
-    if (held.zone >= needs.size()) continue;
-    if (first().memory().restore(held.zone, needs[held.zone], held.generation)) {
-      recorder_.begin_with(held.zone);
+    if (held.zone >= map.needs.size()) continue;
+    if (map.memory.restore(held.zone, map.needs[held.zone], held.generation)) {
+      run_.statistics().begin_with(held.zone);
     }
   }
-  Cycle& cycle = first().cycle();
+  Cycle& cycle = map.cycle;
   cycle.continue_from(checkpoint.cycle, checkpoint.start_ns);
   if (checkpoint.has_pose) {
     cycle.start_at(checkpoint.now_ns, checkpoint.T_map_base,
@@ -157,37 +118,37 @@ void RecordedDrive::go_on_from(const Checkpoint& checkpoint) {
   for (const ZoneId zone : checkpoint.pinned) add(Command::Kind::kPin, zone);
 }
 
-bool RecordedDrive::answers(const RecordedInput& input, std::string& fault) {
+Outcome<void> RecordedDrive::answer(const RecordedInput& input) {
   for (const LoadResult& load : input.loads) {
     const std::optional<LoadRequest> asked = recorded_.asked();
     if (recorded_.answer(load)) continue;
-    const auto told = [&](ZoneId zone, std::uint32_t generation) {
-      const ZoneGraph& graph = follower_.map().model().graph;
+    const auto text = [&](ZoneId zone, std::uint32_t generation) {
+      const ZoneGraph& graph = run_.accounted_map().model().graph;
       const std::string name =
           zone < graph.zone_count() ? graph.name(zone) : "number " + std::to_string(zone);
       return "zone " + name + " (generation " + std::to_string(generation) + ")";
     };
-    fault = "diverged at cycle " + std::to_string(maps_->map().cycle.state().cycles) +
-            ": recorded is what became of a load of " + told(load.zone, load.generation) +
-            ", but here " + (asked ? told(asked->zone, asked->generation) : std::string("none")) +
+    return failure(
+        "diverged at cycle " + std::to_string(run_.switcher().map().cycle.state().cycles) +
+            ": recorded is what became of a load of " + text(load.zone, load.generation) +
+            ", but here " + (asked ? text(asked->zone, asked->generation) : std::string("none")) +
             " was asked for; replay with the version that recorded it, " +
-            recording_.preface().program;
-    return false;
+            recording_.preface().program,
+        ErrorCode::kMismatch);
   }
-  return true;
+  return {};
 }
 
 // What became of loads: as recorded, or as modelled.
-bool RecordedDrive::take_loads(const RecordedInput& input, std::string& fault) {
+Outcome<void> RecordedDrive::take_loads(const RecordedInput& input) {
   loads_.clear();
   if (exact_) {
     loads_ = input.loads;
-    if (!answers(input, fault)) return false;
-  } else {
-    timed_.advance_to(input.now_ns);
-    while (const auto load = timed_.poll()) loads_.push_back(*load);
+    return answer(input);
   }
-  return true;
+  modelled_.advance_to(input.now_ns);
+  while (const auto load = modelled_.poll()) loads_.push_back(*load);
+  return {};
 }
 
 // The commands of the cycle, behind those of a checkpoint that do not fit in one.
@@ -207,74 +168,54 @@ std::span<const LineEdge> RecordedDrive::take_edges(const RecordedInput& input) 
   return edges_;
 }
 
-bool RecordedDrive::run_cycles(std::string& fault) {
+Outcome<void> RecordedDrive::run_cycles() {
   while (const RecordedInput* const recorded = recording_.next()) {
-    if (!take_loads(*recorded, fault)) return false;
+    if (auto taken = take_loads(*recorded); !taken) return taken;
     take_commands(*recorded);
-    if (recorded->offer.map != 0 && !offer(recorded->offer.map, fault)) return false;
-    maps_->run({recorded->now_ns, recorded->frames, recorded->corrections, loads_, commands_,
-                recorded->offer, take_edges(*recorded)});
+    if (recorded->offer.map != 0) {
+      if (auto offered = offer(recorded->offer.map); !offered) return offered;
+    }
+    run_.step({.now_ns = recorded->now_ns,
+               .frames = recorded->frames,
+               .corrections = recorded->corrections,
+               .loads = loads_,
+               .commands = commands_,
+               .offer = recorded->offer,
+               .edges = take_edges(*recorded)});
     frames_ += recorded->frames.size();
-    const MapInUse& map = maps_->map();
-    follower_.follow(map.number);
-    recorder_.after_cycle(record_of(recorded->now_ns, map.cycle.state(), map.memory));
-    if (const MapInUse* const unused = maps_->take_unused()) {
-      std::erase_if(maps_in_use_, [&](const auto& kept) { return &kept->in_use() == unused; });
-    }
   }
-  return true;
+  return {};
 }
 
-bool RecordedDrive::offer(std::uint32_t number, std::string& fault) {
-  if (find(number) != nullptr || maps_->changing()) {
-    fault = "map " + std::to_string(number) + " was offered while another was";
-    return false;
+Outcome<void> RecordedDrive::offer(std::uint32_t number) {
+  if (run_.find(number) != nullptr || run_.switcher().changing()) {
+    return failure("map " + std::to_string(number) + " was offered while another was",
+                   ErrorCode::kMismatch);
   }
-  auto map = map_of(recording_, settings_, terms_, number, fault);
-  if (map == nullptr || !prepare(*map, fault)) return false;
-  maps_in_use_.push_back(map);
-  ZP_REQUIRE(maps_->offer(map->in_use()));
-  return true;
+  auto catalog = catalog_of(recording_, settings_, number);
+  if (!catalog) return catalog.error();
+  auto map = run_.prepare(number, std::move(*catalog));
+  if (!map) return map.error();
+  run_.add(*map);
+  ZP_REQUIRE(run_.switcher().offer((*map)->in_use()));
+  return {};
 }
 
-std::optional<RecordedRunResult> RecordedDrive::drive(const std::string& events_path,
-                                                      std::string& fault) {
-  if (!events_path.empty()) {
-    if (const auto opened = log_.write_to(events_path); !opened) {
-      fault = events_path + ": cannot be written: " + to_string(opened.error().code);
-      return std::nullopt;
-    }
-  }
-  if (!prepare(first(), fault)) return std::nullopt;
-  maps_.emplace(first().in_use(), loader(), nullptr);
-  if (exact_) {
-    begin();
-  } else {
-    go_on_from(*recording_.checkpoint());
-  }
-  const std::uint32_t on_offer = exact_ ? 0 : recording_.checkpoint()->offered_map;
-  if (on_offer != 0 && !offer(on_offer, fault)) return std::nullopt;
-  if (!run_cycles(fault)) return std::nullopt;
-  maps_->map().cycle.finish();
-  return result(events_path, fault);
+Outcome<RecordedRunResult> RecordedDrive::drive() {
+  if (const auto opened = run_.open({.loader = loader()}); !opened) return opened.error();
+  if (const auto begun = begin(); !begun) return begun.error();
+  if (const auto driven = run_cycles(); !driven) return driven.error();
+  run_.end();
+  return result();
 }
 
-std::optional<RecordedRunResult> RecordedDrive::result(const std::string& events_path,
-                                                       std::string& fault) {
-  auto hash = log_.finish();
-  if (!hash) {
-    fault = events_path + ": cannot be written: " + to_string(hash.error().code);
-    return std::nullopt;
-  }
+Outcome<RecordedRunResult> RecordedDrive::result() {
+  const ByteCount bytes = exact_ ? recorded_.bytes_loaded() : modelled_.bytes_loaded();
+  auto summary = run_.summarise(bytes, frames_);
+  if (!summary) return summary.error();
   RecordedRunResult result;
-  RunSummary& summary = result.replay.summary;
-  recorder_.summarise(summary);
-  summarise_cycle(maps_->map().cycle, summary);
-  summary.bytes_loaded = exact_ ? recorded_.bytes_loaded() : timed_.bytes_loaded();
-  summary.can_frames = frames_;
-  summary.event_log_hash = std::move(hash).value();
-  result.replay.trace = recorder_.take_trace();
-  describe_map(first().model(), result.replay.trace);
+  result.replay.summary = std::move(*summary);
+  result.replay.trace = run_.take_trace();
   result.first_cycle = recording_.first_cycle();
   result.next_cycle = recording_.cycles_read();
   result.complete = recording_.complete();
@@ -285,37 +226,38 @@ std::optional<RecordedRunResult> RecordedDrive::result(const std::string& events
 
 }  // namespace
 
-std::optional<RecordedRun> open_recorded_run(const RecordingPreface& preface, std::string& fault) {
+Outcome<RecordedRun> open_recorded_run(const RecordingPreface& preface) {
   LoadedSettings loaded = parse_settings(preface.settings, preface.settings_path, preface.dbc);
   if (!loaded.ok()) {
-    fault = "the recorded settings cannot be used by this version (recorded by " + preface.program +
-            ")";
-    for (const std::string& text : loaded.faults) fault += "\n  " + text;
-    return std::nullopt;
+    std::string all = "the recorded settings cannot be used by this version (recorded by " +
+                      preface.program + ")";
+    for (const std::string& fault : loaded.faults) all += "\n  " + fault;
+    return failure(std::move(all));
   }
   Result<Catalog> catalog =
       Catalog::read(preface.manifest, preface.map_folder, loaded.settings.memory.payload.mask);
   if (!catalog) {
-    fault = "the recorded map cannot be used: " + std::string(to_string(catalog.error().code)) +
-            " (" + std::to_string(catalog.error().detail) + ")";
-    return std::nullopt;
+    return failure(
+        "the recorded map cannot be used: " + std::string(to_string(catalog.error().code)) + " (" +
+            std::to_string(catalog.error().detail) + ")",
+        catalog.error().code);
   }
   return RecordedRun{std::move(loaded.settings), std::move(catalog).value()};
 }
 
-std::optional<RecordedRunResult> replay_recording(RecordingReader& recording,
-                                                  const RecordedRun& run,
-                                                  const std::string& events_path,
-                                                  std::string& fault) {
-  const RecordingPreface& preface = recording.preface();
-  std::shared_ptr<MapVersion> map = MapVersion::make(1, run.catalog, preface.terms, fault);
-  if (map == nullptr) return std::nullopt;
+Outcome<RecordedRunResult> replay_recording(RecordingReader& recording, const RecordedRun& run,
+                                            const std::string& events_path) {
+  const MapTerms& terms = recording.preface().terms;
+  auto map = MapVersion::make(1, run.catalog, terms);
+  if (!map) return map.error();
   const std::uint32_t in_use = recording.checkpoint() ? recording.checkpoint()->map : 1;
   if (in_use != 1) {
-    map = map_of(recording, run.settings, map->model().terms_of_next(preface.terms), in_use, fault);
-    if (map == nullptr) return std::nullopt;
+    auto catalog = catalog_of(recording, run.settings, in_use);
+    if (!catalog) return catalog.error();
+    map = MapVersion::make(in_use, std::move(*catalog), (*map)->model().terms_of_next(terms));
+    if (!map) return map.error();
   }
-  return RecordedDrive(recording, run, std::move(map)).drive(events_path, fault);
+  return RecordedDrive(recording, run, events_path, std::move(*map)).drive();
 }
 
 }  // namespace zonepack

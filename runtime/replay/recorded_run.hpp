@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "runtime/map/catalog.hpp"
@@ -21,22 +20,19 @@ struct RecordedRunResult {
   std::string live_hash;         // the event log's, when it ran; empty: not recorded
 };
 
-// Opens what a recording holds of settings and map: what replay_recording() works on. A complete
-// message in `fault`, or nothing.
+// The settings and the first map of a recording: what replay_recording() works on.
 struct RecordedRun {
   Settings settings;
   Catalog catalog;
 };
-std::optional<RecordedRun> open_recorded_run(const RecordingPreface& preface, std::string& fault);
+Outcome<RecordedRun> open_recorded_run(const RecordingPreface& preface);
 
-// Drives what was recorded through the cycle. From its beginning, the events are those of the run,
+// Drives what was recorded through a run. From its beginning, the events are those of the run,
 // byte for byte. From a checkpoint, the run goes on as from a guess: loads take the time of the
 // model, and until the first fixes decisions may differ from those of the run.
-// Nothing when the recording contradicts itself or the cycle (another program version, a forged
-// file): `fault` then names the cycle.
-std::optional<RecordedRunResult> replay_recording(RecordingReader& recording,
-                                                  const RecordedRun& run,
-                                                  const std::string& events_path,
-                                                  std::string& fault);
+// Fails, naming the cycle, when the recording contradicts itself or the cycle (another program
+// version, a forged file).
+Outcome<RecordedRunResult> replay_recording(RecordingReader& recording, const RecordedRun& run,
+                                            const std::string& events_path);
 
 }  // namespace zonepack

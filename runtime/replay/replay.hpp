@@ -6,25 +6,25 @@
 #include <string>
 #include <vector>
 
-#include "platform/base/byte_count.hpp"
-#include "platform/sim/sim_can_bus.hpp"
+#include "platform/base/failure.hpp"
+#include "platform/can_frame_source.hpp"
 #include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/run/map_model.hpp"
 #include "runtime/run/run_files.hpp"
+#include "runtime/run/run_start.hpp"
 #include "runtime/run/run_summary.hpp"
 #include "runtime/run/run_trace.hpp"
 
 namespace zonepack {
 
-// A recorded run, and the limits to hold while driving it again.
+// A CAN log with what came with it, and the limits to hold while driving it again.
 struct ReplayInput {
   const Catalog& catalog;
   CanFrameSource& frames;
   std::vector<PoseCorrection> corrections{};  // in order of reception
-  const TruthTrack* truth = nullptr;          // for the figures only, unless start_at_truth
-  std::optional<Pose2> start{};               // nothing: wait for the first fix
-  bool start_at_truth = false;
+  const TruthTrack* truth = nullptr;          // for the figures, and for a start at the truth
+  StartChoice start{};
   CycleConfig cycle{};
   std::uint32_t most_frames = 64;  // taken from the bus in one cycle
   MapTerms terms{};
@@ -39,10 +39,9 @@ struct ReplayResult {
   std::vector<std::string> warnings;  // complete messages
 };
 
-// Drives the recording through the cycle, on simulated time: a cycle every period_ns from the first
-// frame to the last; frames enter at their stamp, corrections when received, loads when the model
-// says. Nothing is measured: the same input gives the same result everywhere.
-// Nothing on error; `fault` says why in a complete message.
-std::optional<ReplayResult> replay(ReplayInput input, std::string& fault);
+// Drives the log through a run, in simulated time: a cycle every period_ns from the first frame to
+// the last; frames enter at their stamp, corrections when received, loads when the model says.
+// Nothing is measured: the same input gives the same result everywhere.
+Outcome<ReplayResult> replay(ReplayInput input);
 
 }  // namespace zonepack

@@ -3,10 +3,10 @@
 
 #include <iostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "platform/can_log.hpp"
-#include "runtime/map/catalog.hpp"
 #include "runtime/replay/recorded_run.hpp"
 #include "runtime/replay/replay.hpp"
 #include "runtime/run/baseline.hpp"
@@ -17,18 +17,16 @@
 namespace zonepack {
 namespace {
 
-int fail_replay(const std::string& message, int exit_code = 1) {
-  std::cerr << "zoned replay: " << message << '\n';
-  return exit_code;
-}
+constexpr const char* kProgram = "zoned replay";
+
+void note(const std::string& message) { std::cerr << kProgram << ": " << message << '\n'; }
 
 ReplayInput replay_input(const ReplayArguments& arguments, RunInputs& inputs, CanLogReader& log) {
   const Settings& settings = inputs.settings;
   ReplayInput input{inputs.catalog, log};
   input.corrections = std::move(inputs.corrections);
   input.truth = inputs.truth ? &*inputs.truth : nullptr;
-  input.start_at_truth = arguments.start.kind == StartChoice::Kind::kTruth;
-  if (arguments.start.kind == StartChoice::Kind::kPose) input.start = arguments.start.pose;
+  input.start = arguments.start;
   input.cycle = cycle_config(settings);
   input.most_frames = settings.cycle.most_frames;
   input.terms = map_terms(arguments, settings);
@@ -36,90 +34,86 @@ ReplayInput replay_input(const ReplayArguments& arguments, RunInputs& inputs, Ca
   return input;
 }
 
-std::optional<std::string> write_results(const ReplayArguments& arguments, const Catalog& catalog,
-                                         const std::vector<BaselineRow>& baseline,
-                                         const ReplayResult& result) {
-  if (auto problem = write_summary(result.summary, arguments.json)) return problem;
-  const std::string& model = arguments.can.empty() ? arguments.recording : arguments.can;
-  const RunReportInput run{catalog.folder, model, result.summary, result.trace, baseline};
+Outcome<void> write_results(const ReplayArguments& arguments, const Catalog& catalog,
+                            const std::vector<BaselineRow>& baseline, const ReplayResult& result) {
+  if (auto written = write_summary(result.summary, arguments.json); !written) return written;
+  const std::string& source = arguments.can.empty() ? arguments.recording : arguments.can;
+  const RunReportInput run{catalog.folder, source, result.summary, result.trace, baseline};
   if (!arguments.picture.empty()) {
-    if (auto drawn = report::write_report(arguments.picture, make_run_picture(run)); !drawn) {
-      return drawn.error().message;
-    }
+    auto drawn = report::write_report(arguments.picture, make_run_picture(run));
+    if (!drawn) return drawn;
   }
-  if (arguments.report.empty()) return std::nullopt;
-  const auto written = report::write_report(arguments.report, make_run_report(run));
-  return written ? std::nullopt : std::optional(written.error().message);
+  if (arguments.report.empty()) return {};
+  return report::write_report(arguments.report, make_run_report(run));
 }
 
 // The end of a replay that worked: results, and whether a limit was exceeded.
-int tell_results(const ReplayArguments& arguments, const Catalog& catalog,
-                 const std::vector<BaselineRow>& baseline, const ReplayResult& result) {
-  for (const std::string& text : result.faults) std::cerr << "zoned replay: " << text << '\n';
-  for (const std::string& text : result.warnings) {
-    std::cerr << "zoned replay: warning: " << text << '\n';
-  }
-  if (const auto unwritten = write_results(arguments, catalog, baseline, result)) {
-    return fail_replay(*unwritten);
-  }
-  if (result.summary.budget_violations > 0) {
-    return fail_replay("a limit was exceeded in " +
-                       std::to_string(result.summary.budget_violations) + " cycles");
-  }
-  return 0;
+Outcome<void> conclude(const ReplayArguments& arguments, const Catalog& catalog,
+                       const std::vector<BaselineRow>& baseline, const ReplayResult& result) {
+  for (const std::string& text : result.faults) note(text);
+  for (const std::string& text : result.warnings) note("warning: " + text);
+  if (auto written = write_results(arguments, catalog, baseline, result); !written) return written;
+  return check_limits(result.summary);
 }
 
-int run_recording(const ReplayArguments& arguments) {
-  std::string fault;
-  auto recording = RecordingReader::open(arguments.recording, fault);
-  if (!recording) return fail_replay(fault);
-  const auto run = open_recorded_run(recording->preface(), fault);
-  if (!run) return fail_replay(arguments.recording + ": " + fault);
-  const auto result = replay_recording(*recording, *run, arguments.events, fault);
-  if (!result) return fail_replay(arguments.recording + ": " + fault);
-  if (!recording->note().empty()) std::cerr << "zoned replay: " << recording->note() << '\n';
+Outcome<void> replay_from_recording(const ReplayArguments& arguments) {
+  auto recording = RecordingReader::open(arguments.recording);
+  if (!recording) return recording.error();
+  const auto in_recording = [&](const Failure& cause) {
+    return Failure{cause.code, arguments.recording + ": " + cause.message};
+  };
+  const auto run = open_recorded_run(recording->preface());
+  if (!run) return in_recording(run.error());
+  const auto result = replay_recording(*recording, *run, arguments.events);
+  if (!result) return in_recording(result.error());
+  if (!recording->note().empty()) note(recording->note());
   if (!result->exact) {
-    std::cerr << "zoned replay: " << arguments.recording << ": begins with cycle "
-              << result->first_cycle
-              << ", from a guess: decisions until the first fixes may differ from the run's\n";
+    note(arguments.recording + ": begins with cycle " + std::to_string(result->first_cycle) +
+         ", from a guess: decisions until the first fixes may differ from the run's");
   }
-  const int exit_code = tell_results(arguments, run->catalog, {}, result->replay);
-  if (result->exact && result->complete && !result->live_hash.empty() &&
-      result->live_hash != result->replay.summary.event_log_hash) {
-    return fail_replay(arguments.recording +
-                       ": the events differ from those of the run (event_log_hash " +
-                       result->live_hash + "); replay with the version that recorded it, " +
-                       recording->preface().program);
+  auto concluded = conclude(arguments, run->catalog, {}, result->replay);
+  const bool differs = result->exact && result->complete && !result->live_hash.empty() &&
+                       result->live_hash != result->replay.summary.event_log_hash;
+  if (!differs) return concluded;
+  if (!concluded) note(concluded.error().message);
+  return failure(arguments.recording +
+                     ": the events differ from those of the run (event_log_hash " +
+                     result->live_hash + "); replay with the version that recorded it, " +
+                     recording->preface().program,
+                 ErrorCode::kMismatch);
+}
+
+Outcome<void> replay_log(const ReplayArguments& arguments) {
+  if (arguments.start.kind == StartChoice::Kind::kFix && arguments.corrections.empty()) {
+    note(
+        "warning: nothing ever tells where the robot is: give --corrections FILE, or --start "
+        "X,Y,YAW_DEG or truth");
   }
-  return exit_code;
+  auto inputs = read_run_inputs(arguments);
+  if (!inputs) return inputs.error();
+  std::vector<BaselineRow> baseline;
+  if (!arguments.baseline.empty()) {
+    auto rows = read_baseline(arguments.baseline);
+    if (!rows) return rows.error();
+    baseline = std::move(*rows);
+  }
+  CanLogReader log(arguments.can, inputs->settings.can.interface);
+  if (const auto opened = log.open(); !opened) {
+    return failure(log.explain(opened.error()), opened.error().code);
+  }
+  auto result = replay(replay_input(arguments, *inputs, log));
+  tell_log_faults(arguments.can, log.summary());
+  if (!result) return result.error();
+  result->summary.can_rejected += log.summary().broken_lines + log.summary().stray_stamps;
+  return conclude(arguments, inputs->catalog, baseline, *result);
 }
 
 }  // namespace
 
 int run_replay(const ReplayArguments& arguments) {
-  if (!arguments.recording.empty()) return run_recording(arguments);
-  if (arguments.start.kind == StartChoice::Kind::kTruth && arguments.truth.empty()) {
-    return fail_replay("--start truth needs --truth FILE", 2);
-  }
-  if (arguments.start.kind == StartChoice::Kind::kFix && arguments.corrections.empty()) {
-    std::cerr << "zoned replay: warning: nothing ever tells where the robot is: give "
-                 "--corrections FILE, or --start X,Y,YAW_DEG or truth\n";
-  }
-  RunInputs inputs;
-  if (const auto fault = read_run_inputs(arguments, inputs)) return fail_replay(*fault);
-  std::vector<BaselineRow> baseline;
-  if (!arguments.baseline.empty()) {
-    if (const auto fault = read_baseline(arguments.baseline, baseline)) return fail_replay(*fault);
-  }
-  CanLogReader log(arguments.can, inputs.settings.can.interface);
-  if (const auto opened = log.open(); !opened) return fail_replay(log.explain(opened.error()));
-
-  std::string fault;
-  auto result = replay(replay_input(arguments, inputs, log), fault);
-  tell_log_faults(arguments.can, log.summary());
-  if (!result) return fail_replay(fault);
-  result->summary.can_rejected += log.summary().broken_lines + log.summary().stray_stamps;
-  return tell_results(arguments, inputs.catalog, baseline, *result);
+  const auto done =
+      arguments.recording.empty() ? replay_log(arguments) : replay_from_recording(arguments);
+  return done ? 0 : report_failure(kProgram, done.error());
 }
 
 }  // namespace zonepack

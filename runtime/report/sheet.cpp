@@ -27,15 +27,17 @@ struct Sheet {
   void facts(const std::vector<Fact>& all) {
     const double width = kInner / static_cast<double>(kFactsARow);
     for (std::size_t i = 0; i < all.size() && svg != nullptr; ++i) {
+      const std::size_t row = i / kFactsARow;
       const Px at{kMargin + width * static_cast<double>(i % kFactsARow),
-                  y + kFactHeight * static_cast<double>(i / kFactsARow)};
+                  y + kFactHeight * static_cast<double>(row)};
       svg->line(at, {at.x + width - 14, at.y}, {.stroke = kFaint});
       svg->text({at.x, at.y + 15}, all[i].name, {.size = 11, .color = kQuiet});
       svg->text({at.x, at.y + 33}, all[i].value,
                 {.size = 15, .color = all[i].bad ? kLimit : kInk, .bold = true});
       svg->text({at.x, at.y + 46}, all[i].note, {.size = 9.5, .color = kQuiet});
     }
-    y += kFactHeight * static_cast<double>((all.size() + kFactsARow - 1) / kFactsARow);
+    const std::size_t rows = (all.size() + kFactsARow - 1) / kFactsARow;
+    y += kFactHeight * static_cast<double>(rows);
   }
 
   void heading(std::string_view text, std::string_view caption) {

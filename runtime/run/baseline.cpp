@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 namespace zonepack {
 namespace {
@@ -37,22 +39,27 @@ std::optional<double> cell_value(std::string_view text) noexcept {
 
 class Reader {
  public:
-  Reader(const std::string& path, std::vector<BaselineRow>& rows) : path_(path), rows_(rows) {}
+  explicit Reader(const std::string& path) : path_(path) {}
 
-  std::optional<std::string> read() {
+  Outcome<std::vector<BaselineRow>> read() {
     std::ifstream in(path_);
-    if (!in) return path_ + ": cannot read the baseline: " + std::strerror(errno);
+    if (!in) {
+      return failure(path_ + ": cannot read the baseline: " + std::strerror(errno),
+                     ErrorCode::kNotFound);
+    }
     for (std::string line; std::getline(in, line);) {
       ++line_;
       if (line.ends_with('\r')) line.pop_back();
       if (line.empty() || line.starts_with('#')) continue;
       const std::vector<std::string_view> cells = split_cells(line);
-      if (const auto problem = width_ == 0 ? header(cells) : row(cells)) return problem;
+      if (const auto taken = width_ == 0 ? header(cells) : row(cells); !taken) return taken.error();
     }
-    if (in.bad()) return path_ + ": cannot read the baseline to its end";
-    if (rows_.empty())
-      return path_ + ": the baseline has no rows; expected a CSV file with columns " + wanted();
-    return std::nullopt;
+    if (in.bad()) return failure(path_ + ": cannot read the baseline to its end", ErrorCode::kIo);
+    if (rows_.empty()) {
+      return failure(path_ + ": the baseline has no rows; expected a CSV file with columns " +
+                     wanted());
+    }
+    return std::move(rows_);
   }
 
  private:
@@ -62,11 +69,11 @@ class Reader {
     return text;
   }
 
-  std::string at(const std::string& what) const {
-    return path_ + ":" + std::to_string(line_) + ": " + what;
+  Failure at(const std::string& what) const {
+    return failure(path_ + ":" + std::to_string(line_) + ": " + what);
   }
 
-  std::optional<std::string> header(const std::vector<std::string_view>& cells) {
+  Outcome<void> header(const std::vector<std::string_view>& cells) {
     for (std::size_t i = 0; i < kColumns; ++i) {
       const auto found = std::ranges::find(cells, kNames[i]);
       if (found == cells.end()) {
@@ -76,10 +83,10 @@ class Reader {
       columns_[i] = static_cast<std::size_t>(found - cells.begin());
     }
     width_ = cells.size();
-    return std::nullopt;
+    return {};
   }
 
-  std::optional<std::string> row(const std::vector<std::string_view>& cells) {
+  Outcome<void> row(const std::vector<std::string_view>& cells) {
     if (cells.size() != width_) {
       return at(std::to_string(cells.size()) + " cells where the column names have " +
                 std::to_string(width_));
@@ -97,13 +104,15 @@ class Reader {
     const double t_s = values[kTime] - first_t_s_;
     if (!rows_.empty() && t_s < rows_.back().t_s) return at("time goes back");
     const auto count = static_cast<double>(rows_.size() + 1);
-    rows_.push_back(
-        {t_s, values[kWorkingMemory], values[kRetrieved], std::max(0.0, values[kRemoved] - count)});
-    return std::nullopt;
+    rows_.push_back({.t_s = t_s,
+                     .in_memory = values[kWorkingMemory],
+                     .loaded = values[kRetrieved],
+                     .unloaded = std::max(0.0, values[kRemoved] - count)});
+    return {};
   }
 
   const std::string& path_;
-  std::vector<BaselineRow>& rows_;
+  std::vector<BaselineRow> rows_;
   std::array<std::size_t, kColumns> columns_{};
   std::size_t width_ = 0;
   std::size_t line_ = 0;
@@ -112,9 +121,8 @@ class Reader {
 
 }  // namespace
 
-std::optional<std::string> read_baseline(const std::string& path, std::vector<BaselineRow>& rows) {
-  rows.clear();
-  return Reader(path, rows).read();
+Outcome<std::vector<BaselineRow>> read_baseline(const std::string& path) {
+  return Reader(path).read();
 }
 
 }  // namespace zonepack

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
+
+#include "platform/base/failure.hpp"
 
 // What RTAB-Map itself did on the same recording, to draw beside ours: one row for each image that
 // it processed. A CSV file with a line of column names (t, wm, cum_removed and cum_retrieved are
@@ -18,7 +19,6 @@ struct BaselineRow {
   double unloaded = 0;   // cumulative, map signatures only
 };
 
-// Fills `rows`. Returns nothing when read, else a complete message for the user.
-std::optional<std::string> read_baseline(const std::string& path, std::vector<BaselineRow>& rows);
+Outcome<std::vector<BaselineRow>> read_baseline(const std::string& path);
 
 }  // namespace zonepack

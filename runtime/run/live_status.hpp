@@ -29,7 +29,7 @@ struct WorstCycle {
   std::uint32_t frames = 0, corrections = 0, loads = 0, commands = 0;
 };
 
-// What was left undone or late, each with its stated consequence.
+// What was left undone or late. Counters only: serve/status_figures.cpp has a row for each.
 struct OverloadCounters {
   std::uint64_t missed_deadlines = 0;     // cycles that began a period or more late
   std::uint64_t skipped_periods = 0;      // periods without a cycle for that reason
@@ -37,13 +37,13 @@ struct OverloadCounters {
   std::uint64_t dropped_frames = 0;       // lost before they could be read
   std::uint64_t deferred_commands = 0;    // cycles that left commands waiting
   std::uint64_t lost_events = 0;          // the queue to their writer was full
-  std::uint64_t lost_service_events = 0;  // the queue to the server was full; it looks again
-  std::uint64_t lost_records = 0;         // of what cycles did
-  std::uint64_t lost_replies = 0;         // to commands
+  std::uint64_t lost_service_events = 0;  // the queue to the server was full; it resyncs
+  std::uint64_t lost_records = 0;         // records of what cycles did
+  std::uint64_t lost_replies = 0;         // replies to commands
   std::uint64_t lost_recordings = 0;      // cycles whose inputs could not be recorded
 };
 
-// How the run stands, as the control thread tells it after every cycle.
+// The state of the run, as the control thread publishes it after every cycle.
 struct LiveStatus {
   std::int64_t now_ns = 0;           // the cycle's time
   std::int64_t clock_offset_ns = 0;  // CLOCK_REALTIME minus the run's clock

@@ -38,14 +38,6 @@ std::vector<ZoneNeed> needs_of(const Catalog& catalog) {
   return needs;
 }
 
-std::vector<LoadWork> work_of(const Catalog& catalog) {
-  std::vector<LoadWork> work;
-  for (const CatalogZone& zone : catalog.zones) {
-    work.push_back({zone.stored_bytes, zone.decoded_bytes});
-  }
-  return work;
-}
-
 std::vector<float> load_times_of(const std::vector<LoadWork>& work, const LoadRates& rates,
                                  std::int64_t period_ns) {
   std::vector<float> times;
@@ -80,41 +72,47 @@ std::string smallest_budget_text(const Catalog& catalog, const std::vector<ZoneI
          " (zonepack plan tells what sets it)";
 }
 
-std::optional<std::string> refusal(const Catalog& catalog, const ResidencyLimits& limits,
-                                   const std::vector<ZoneId>& pinned) {
+Outcome<void> check_limits(const Catalog& catalog, const ResidencyLimits& limits,
+                           const std::vector<ZoneId>& pinned) {
   if (limits.fixed > limits.budget) {
-    return "budget " + format_byte_count(limits.budget) + ": tables and read buffers alone take " +
-           std::to_string(limits.fixed) + " bytes; " + smallest_budget_text(catalog, pinned);
+    return failure("budget " + format_byte_count(limits.budget) +
+                       ": tables and read buffers alone take " + std::to_string(limits.fixed) +
+                       " bytes; " + smallest_budget_text(catalog, pinned),
+                   ErrorCode::kNoRoom);
   }
-  if (catalog.zones.empty()) return std::nullopt;
+  if (catalog.zones.empty()) return {};
   const std::uint64_t slots =
       Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes);
   const auto place = std::min<std::uint64_t>(slots, limits.most_slots);
   const CatalogZone& widest = *std::ranges::max_element(catalog.zones, {}, &CatalogZone::slots);
   if (widest.slots > slots) {
-    return "zone " + widest.name + " takes " + std::to_string(widest.slots * limits.slot_bytes) +
-           " bytes beside " + std::to_string(limits.fixed) +
-           " for tables and buffers, over the budget of " + format_byte_count(limits.budget) +
-           "; " + smallest_budget_text(catalog, pinned);
+    return failure(
+        "zone " + widest.name + " takes " + std::to_string(widest.slots * limits.slot_bytes) +
+            " bytes beside " + std::to_string(limits.fixed) +
+            " for tables and buffers, over the budget of " + format_byte_count(limits.budget) +
+            "; " + smallest_budget_text(catalog, pinned),
+        ErrorCode::kNoRoom);
   }
   if (widest.slots > place) {
-    return "zone " + widest.name + " takes " + std::to_string(widest.slots) + " slots of " +
-           std::to_string(kSlotBytes) + " bytes, over the " + std::to_string(place) +
-           " that were reserved when zoned started; start it again with this map";
+    return failure("zone " + widest.name + " takes " + std::to_string(widest.slots) + " slots of " +
+                       std::to_string(kSlotBytes) + " bytes, over the " + std::to_string(place) +
+                       " that were reserved when zoned started; start it again with this map",
+                   ErrorCode::kNoRoom);
   }
   const CatalogZone& fullest =
       *std::ranges::max_element(catalog.zones, {}, &CatalogZone::signatures);
   if (limits.max_signatures > 0 && fullest.signatures > limits.max_signatures) {
-    return "zone " + fullest.name + " has " + std::to_string(fullest.signatures) +
-           " signatures, over the limit of " + std::to_string(limits.max_signatures) +
-           "; the smallest limit for this map is " +
-           std::to_string(limits.largest_pair.signatures) + " signatures";
+    return failure("zone " + fullest.name + " has " + std::to_string(fullest.signatures) +
+                       " signatures, over the limit of " + std::to_string(limits.max_signatures) +
+                       "; the smallest limit for this map is " +
+                       std::to_string(limits.largest_pair.signatures) + " signatures",
+                   ErrorCode::kNoRoom);
   }
-  return std::nullopt;
+  return {};
 }
 
-std::optional<std::string> tightness(const Catalog& catalog, const ResidencyLimits& limits,
-                                     const std::vector<ZoneId>& pinned) {
+std::optional<std::string> tightness_warning(const Catalog& catalog, const ResidencyLimits& limits,
+                                             const std::vector<ZoneId>& pinned) {
   const auto slots = std::min<std::uint64_t>(
       Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes), limits.most_slots);
   for (const CatalogPortal& portal : catalog.portals) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/memory/residency.hpp"
 #include "runtime/run/modelled_loader.hpp"
@@ -16,7 +17,6 @@ namespace zonepack {
 // A catalog in the shape in which the core takes it.
 ZoneGraph graph_of(const Catalog& catalog);
 std::vector<ZoneNeed> needs_of(const Catalog& catalog);
-std::vector<LoadWork> work_of(const Catalog& catalog);
 
 // Seconds from wish to use, by ZoneId: the load, and two cycles in which it is begun and seen.
 std::vector<float> load_times_of(const std::vector<LoadWork>& work, const LoadRates& rates,
@@ -28,13 +28,15 @@ std::vector<float> load_times_of(const std::vector<LoadWork>& work, const LoadRa
 ResidencyLimits limits_for(const Catalog& catalog, std::optional<ByteCount> budget,
                            std::uint64_t max_signatures, const std::vector<ZoneId>& pinned);
 
-// Why the map cannot be driven within these limits: complete messages that name the zone and the
-// smallest budget that would do. A zone that fits, but not together with its neighbours, is a
-// warning: the robot will wait at that door.
-std::optional<std::string> refusal(const Catalog& catalog, const ResidencyLimits& limits,
-                                   const std::vector<ZoneId>& pinned);
-std::optional<std::string> tightness(const Catalog& catalog, const ResidencyLimits& limits,
-                                     const std::vector<ZoneId>& pinned);
+// Fails when the map cannot be held within these limits, and names the zone and the smallest budget
+// that would do.
+Outcome<void> check_limits(const Catalog& catalog, const ResidencyLimits& limits,
+                           const std::vector<ZoneId>& pinned);
+
+// A complete warning when a zone fits, but not together with one of its neighbours: the robot will
+// wait at that door.
+std::optional<std::string> tightness_warning(const Catalog& catalog, const ResidencyLimits& limits,
+                                             const std::vector<ZoneId>& pinned);
 
 // What to do about a budget that is too small, as a clause.
 std::string smallest_budget_text(const Catalog& catalog, const std::vector<ZoneId>& pinned);

@@ -8,17 +8,18 @@
 namespace zonepack {
 namespace {
 
-bool find_pins(const Catalog& catalog, const std::vector<std::string>& names,
-               std::vector<ZoneId>& pinned, std::string& fault) {
+Outcome<std::vector<ZoneId>> find_pins(const Catalog& catalog,
+                                       const std::vector<std::string>& names) {
+  std::vector<ZoneId> pinned;
   for (const std::string& name : names) {
     const ZoneId zone = catalog.find(name);
     if (zone == kNoZone) {
-      fault = "memory.pinned: the map " + catalog.folder + " has no zone " + name;
-      return false;
+      return failure("memory.pinned: the map " + catalog.folder + " has no zone " + name,
+                     ErrorCode::kNotFound);
     }
     if (std::find(pinned.begin(), pinned.end(), zone) == pinned.end()) pinned.push_back(zone);
   }
-  return true;
+  return pinned;
 }
 
 std::uint32_t slots_to_reserve(const std::vector<ZoneNeed>& needs, const ResidencyLimits& limits) {
@@ -33,25 +34,27 @@ std::uint32_t slots_to_reserve(const std::vector<ZoneNeed>& needs, const Residen
 
 }  // namespace
 
-std::unique_ptr<MapModel> MapModel::make(const Catalog& catalog, const MapTerms& terms,
-                                         std::string& fault) {
-  std::vector<ZoneId> pinned;
-  if (!find_pins(catalog, terms.pinned, pinned, fault)) return nullptr;
-  ResidencyLimits limits = limits_for(catalog, terms.budget, terms.max_signatures, pinned);
+Outcome<std::unique_ptr<MapModel>> MapModel::make(const Catalog& catalog, const MapTerms& terms) {
+  auto pinned = find_pins(catalog, terms.pinned);
+  if (!pinned) return pinned.error();
+  ResidencyLimits limits = limits_for(catalog, terms.budget, terms.max_signatures, *pinned);
   limits.lease_ns = terms.lease_ns;
   if (terms.slots) limits.most_slots = *terms.slots;
-  if (const auto refused = refusal(catalog, limits, pinned)) {
-    fault = *refused;
-    return nullptr;
+  if (const auto possible = check_limits(catalog, limits, *pinned); !possible) {
+    return possible.error();
   }
   std::vector<ZoneNeed> needs = needs_of(catalog);
-  std::vector<LoadWork> work = work_of(catalog);
-  std::vector<float> load_s = load_times_of(work, terms.rates, terms.period_ns);
   const std::uint32_t slots = terms.slots.value_or(slots_to_reserve(needs, limits));
-  std::optional<std::string> warning = tightness(catalog, limits, pinned);
+  std::optional<std::string> warning = tightness_warning(catalog, limits, *pinned);
   return std::unique_ptr<MapModel>(
-      new MapModel{catalog, std::move(pinned), limits, graph_of(catalog), std::move(needs),
-                   std::move(work), std::move(load_s), slots, std::move(warning)});
+      new MapModel{.catalog = catalog,
+                   .pinned = std::move(*pinned),
+                   .limits = limits,
+                   .graph = graph_of(catalog),
+                   .needs = std::move(needs),
+                   .load_s = load_times_of(work_of(catalog), terms.rates, terms.period_ns),
+                   .slots = slots,
+                   .warning = std::move(warning)});
 }
 
 MapTerms MapModel::terms_of_next(const MapTerms& terms) const {
@@ -61,16 +64,16 @@ MapTerms MapModel::terms_of_next(const MapTerms& terms) const {
   return next;
 }
 
-bool MapModel::pin(Residency& memory, std::string& fault) const {
+Outcome<void> MapModel::pin(Residency& memory) const {
   for (const ZoneId zone : pinned) {
     if (memory.pin(zone, needs[zone])) continue;
-    fault = "memory.pinned: zone " + graph.name(zone) +
-            " does not fit beside the largest pair of neighbours in a budget of " +
-            format_byte_count(limits.budget) +
-            "; pin less, or allow more: " + smallest_budget_text(catalog, pinned);
-    return false;
+    return failure("memory.pinned: zone " + graph.name(zone) +
+                       " does not fit beside the largest pair of neighbours in a budget of " +
+                       format_byte_count(limits.budget) +
+                       "; pin less, or allow more: " + smallest_budget_text(catalog, pinned),
+                   ErrorCode::kNoRoom);
   }
-  return true;
+  return {};
 }
 
 }  // namespace zonepack

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/memory/residency.hpp"
 #include "runtime/run/modelled_loader.hpp"
@@ -33,21 +34,19 @@ struct MapModel {
   ResidencyLimits limits;
   ZoneGraph graph;
   std::vector<ZoneNeed> needs;
-  std::vector<LoadWork> work;
   std::vector<float> load_s;
   // To reserve: no more than all zones fill together, and another version's largest beside them.
   std::uint32_t slots;
   std::optional<std::string> warning;  // a complete message
 
-  // Null when the map cannot be held on these terms; `fault` says why in a complete message.
-  static std::unique_ptr<MapModel> make(const Catalog& catalog, const MapTerms& terms,
-                                        std::string& fault);
+  // Fails when the map cannot be held on these terms.
+  static Outcome<std::unique_ptr<MapModel>> make(const Catalog& catalog, const MapTerms& terms);
 
   // How another version of the map is to be held in this one's place: no more of anything.
   MapTerms terms_of_next(const MapTerms& terms) const;
 
-  // Pins what is to be pinned in a new Residency; false with a complete message in `fault`.
-  bool pin(Residency& memory, std::string& fault) const;
+  // Pins what is to be pinned in a new Residency.
+  Outcome<void> pin(Residency& memory) const;
 };
 
 }  // namespace zonepack

@@ -2,6 +2,7 @@
 #include "runtime/run/modelled_loader.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "platform/base/require.hpp"
 
@@ -29,35 +30,74 @@ std::int64_t load_time_ns(const LoadWork& work, const LoadRates& rates) noexcept
   return time_ns(work.stored_bytes, rates.storage) + time_ns(work.decoded_bytes, rates.decode);
 }
 
-ModelledLoader::ModelledLoader(std::uint32_t slots, std::span<const LoadWork> work,
+std::vector<LoadWork> work_of(const Catalog& catalog) {
+  std::vector<LoadWork> work;
+  for (const CatalogZone& zone : catalog.zones) {
+    work.push_back({zone.stored_bytes, zone.decoded_bytes});
+  }
+  return work;
+}
+
+ModelledLoader::ModelledLoader(const Catalog& catalog, std::uint32_t slots, const LoadRates& rates,
+                               ZoneFiller* filler)
+    : ModelledLoader(slots, work_of(catalog), rates, filler) {
+  work_given_ = false;
+}
+
+ModelledLoader::ModelledLoader(std::uint32_t slots, std::vector<LoadWork> work,
                                const LoadRates& rates, ZoneFiller* filler)
-    : pool_(slots), work_(work), rates_(rates), filler_(filler) {
+    : pool_(std::in_place, slots),
+      work_given_(true),
+      work_(std::move(work)),
+      rates_(rates),
+      filler_(filler) {
   slots_.reserve(slots);
+}
+
+ModelledLoader::ModelledLoader(const Catalog& catalog, const LoadRates& rates)
+    : work_(work_of(catalog)), rates_(rates), filler_(nullptr) {}
+
+void ModelledLoader::use(const Catalog& catalog) noexcept {
+  if (!work_given_) work_ = work_of(catalog);
+  if (filler_ != nullptr) filler_->use(catalog);
+}
+
+void ModelledLoader::give_back(SlotChain& slots) noexcept {
+  if (pool_) pool_->give_back(slots);
+  slots = {};
 }
 
 void ModelledLoader::load(const LoadRequest& request) noexcept {
   ZP_REQUIRE(!load_);
   load_ =
       UnderWay{request, {}, now_ns_, now_ns_ + load_time_ns(work_[request.zone], rates_), false};
-  ZP_REQUIRE(pool_.take(request.slots, load_->slots));
+  if (pool_) {
+    ZP_REQUIRE(pool_->take(request.slots, load_->slots));
+  } else {
+    load_->slots = {0, 0, request.slots};
+  }
 }
 
 void ModelledLoader::cancel() noexcept {
   if (!load_ || load_->cancelled) return;
+  load_->cancelled = true;
+  if (!pool_) {
+    load_->done_ns = now_ns_;
+    return;
+  }
   // A load ends between two chunks; chunks are taken to be one slot each.
   const std::int64_t whole_ns = load_->done_ns - load_->started_ns;
   const std::int64_t chunk_ns =
       std::max<std::int64_t>(1, whole_ns / std::max<std::int64_t>(1, load_->request.slots));
   const std::int64_t chunks = (now_ns_ - load_->started_ns + chunk_ns - 1) / chunk_ns;
   load_->done_ns = std::min(load_->done_ns, load_->started_ns + chunks * chunk_ns);
-  load_->cancelled = true;
 }
 
 Result<void> ModelledLoader::fill(const UnderWay& load) {
   if (filler_ == nullptr) return {};
   slots_.clear();
   SlotIndex slot = load.slots.head;
-  for (std::uint32_t i = 0; i < load.slots.count; ++i, slot = pool_.next(slot)) {
+  for (std::uint32_t i = 0; i < load.slots.count; ++i, slot = pool_->next(slot)) {
     slots_.push_back(slot);
   }
   return filler_->fill(load.request.zone, slots_);
@@ -74,7 +114,7 @@ std::optional<LoadResult> ModelledLoader::poll() noexcept {
   if (result.error.code == ErrorCode::kOk) {
     bytes_loaded_ += work_[result.zone].stored_bytes;
   } else {
-    pool_.give_back(result.slots);
+    give_back(result.slots);
   }
   load_.reset();
   return result;

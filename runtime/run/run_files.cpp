@@ -62,68 +62,66 @@ bool parse_stamp(std::string_view word, std::int64_t& stamp_ns) {
   return true;
 }
 
-// Calls take(words) for every record; its text, if any, is what is wrong with the line. The first
-// two columns of a record may be stamps, so columns are words here.
+Failure wrong_columns(std::span<const std::string_view> words) {
+  return failure(std::to_string(words.size()) + " columns");
+}
+
+// Calls take(words) for every record; it fails with what is wrong with the line. The first two
+// columns of a record may be stamps, so columns are words here.
 template <typename Take>
-bool for_each_record(const std::string& path, std::string_view columns, std::string& fault,
-                     Take&& take) {
+Outcome<void> for_each_record(const std::string& path, std::string_view columns, Take&& take) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) {
-    fault = path + ": " + std::strerror(errno) + "; expected lines of " + std::string(columns);
-    return false;
+    return failure(
+        path + ": " + std::strerror(errno) + "; expected lines of " + std::string(columns),
+        ErrorCode::kNotFound);
   }
   const std::size_t count = split(columns).size();
   std::string line;
   for (std::size_t number = 1; std::getline(file, line); ++number) {
     const std::vector<std::string_view> words = split(line);
     if (words.empty() || words[0].front() == '#') continue;
-    std::string wrong;
-    if (words.size() < count) {
-      wrong = std::to_string(words.size()) + " columns";
-    } else {
-      wrong = take(std::span(words));
-    }
-    if (wrong.empty()) continue;
-    fault =
-        path + ":" + std::to_string(number) + ": " + wrong + "; expected " + std::string(columns);
-    return false;
+    const Outcome<void> taken =
+        words.size() < count ? wrong_columns(words) : take(std::span(words));
+    if (taken) continue;
+    return failure(path + ":" + std::to_string(number) + ": " + taken.error().message +
+                   "; expected " + std::string(columns));
   }
-  if (file.bad()) fault = path + ": " + std::strerror(errno);
-  return !file.bad();
+  if (file.bad()) return failure(path + ": " + std::strerror(errno), ErrorCode::kIo);
+  return {};
 }
 
 std::string quoted(std::string_view word) {
   return std::string(1, '"').append(word).append(1, '"');
 }
 
-// The reason why words[first], words[first + 1] ... are not numbers; empty when they are.
-std::string parse_numbers(std::span<const std::string_view> words, std::size_t first,
-                          std::span<double> values) {
+// Reads words[first], words[first + 1] ... as numbers.
+Outcome<void> parse_numbers(std::span<const std::string_view> words, std::size_t first,
+                            std::span<double> values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!parse_number(words[first + i], values[i])) {
-      return quoted(words[first + i]) + " is not a number";
+      return failure(quoted(words[first + i]) + " is not a number");
     }
   }
   return {};
 }
 
-std::string not_a_stamp(std::string_view word) {
-  return quoted(word) + " is not a stamp in seconds";
+Failure not_a_stamp(std::string_view word) {
+  return failure(quoted(word) + " is not a stamp in seconds");
 }
 
 }  // namespace
 
-std::optional<std::vector<PoseCorrection>> read_corrections(const std::string& path,
-                                                            std::string& fault) {
+Outcome<std::vector<PoseCorrection>> read_corrections(const std::string& path) {
   std::vector<PoseCorrection> corrections;
-  const auto take = [&](std::span<const std::string_view> words) -> std::string {
-    if (words.size() != 8) return std::to_string(words.size()) + " columns";
+  const auto take = [&](std::span<const std::string_view> words) -> Outcome<void> {
+    if (words.size() != 8) return wrong_columns(words);
     PoseCorrection c;
     if (!parse_stamp(words[0], c.stamp_ns)) return not_a_stamp(words[0]);
     if (!parse_stamp(words[1], c.received_ns)) return not_a_stamp(words[1]);
     double v[6] = {};
-    if (std::string wrong = parse_numbers(words, 2, v); !wrong.empty()) return wrong;
+    if (auto numbers = parse_numbers(words, 2, v); !numbers) return numbers;
     c.T_map_base = {v[0], v[1], v[2]};
     c.sigma_x_m = v[3];
     c.sigma_y_m = v[4];
@@ -131,7 +129,7 @@ std::optional<std::vector<PoseCorrection>> read_corrections(const std::string& p
     corrections.push_back(c);
     return {};
   };
-  if (!for_each_record(path, kCorrectionColumns, fault, take)) return std::nullopt;
+  if (const auto read = for_each_record(path, kCorrectionColumns, take); !read) return read.error();
   std::stable_sort(corrections.begin(), corrections.end(),
                    [](const PoseCorrection& a, const PoseCorrection& b) {
                      return a.received_ns < b.received_ns;
@@ -157,29 +155,28 @@ std::optional<Pose2> TruthTrack::at(std::int64_t t_ns) const noexcept {
                wrap_angle(p.yaw_rad + wrap_angle(q.yaw_rad - p.yaw_rad) * part)};
 }
 
-std::optional<TruthTrack> read_truth(const std::string& path, std::string& fault) {
+Outcome<TruthTrack> read_truth(const std::string& path) {
   std::vector<TruthTrack::Sample> samples;
-  const auto take = [&](std::span<const std::string_view> words) -> std::string {
+  const auto take = [&](std::span<const std::string_view> words) -> Outcome<void> {
     TruthTrack::Sample sample;
     if (!parse_stamp(words[0], sample.t_ns)) return not_a_stamp(words[0]);
     if (!samples.empty() && sample.t_ns < samples.back().t_ns) {
-      return "stamp " + std::string(words[0]) + " before the one on the line above";
+      return failure("stamp " + std::string(words[0]) + " before the one on the line above");
     }
     double v[7] = {};
-    if (std::string wrong = parse_numbers(words, 1, v); !wrong.empty()) return wrong;
+    if (auto numbers = parse_numbers(words, 1, v); !numbers) return numbers;
     const auto [x, y, z, qx, qy, qz, qw] = v;
     const double norm2 = qx * qx + qy * qy + qz * qz + qw * qw;
-    if (!std::isfinite(x + y + z)) return "a position that is not finite";
-    if (!(norm2 > 0.98 && norm2 < 1.02)) return "a quaternion that is not of length 1";
+    if (!std::isfinite(x + y + z)) return failure("a position that is not finite");
+    if (!(norm2 > 0.98 && norm2 < 1.02)) return failure("a quaternion that is not of length 1");
     const double yaw = det_atan2(2 * (qw * qz + qx * qy), norm2 - 2 * (qy * qy + qz * qz));
     sample.T_map_base = {x, y, yaw};
     samples.push_back(sample);
     return {};
   };
-  if (!for_each_record(path, kTruthColumns, fault, take)) return std::nullopt;
+  if (const auto read = for_each_record(path, kTruthColumns, take); !read) return read.error();
   if (samples.empty()) {
-    fault = path + ": no samples; expected lines of " + std::string(kTruthColumns);
-    return std::nullopt;
+    return failure(path + ": no samples; expected lines of " + std::string(kTruthColumns));
   }
   return TruthTrack(std::move(samples));
 }

@@ -6,20 +6,19 @@
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "runtime/odometry/pose.hpp"
 #include "runtime/odometry/pose_filter.hpp"
 
 // The text files that come with a recorded run. One record a line, columns apart by blanks, lines
 // beginning with # and empty lines passed over. Stamps are seconds, read to the nanosecond.
-// Errors are complete messages: file:line, what was found, which columns are expected.
+// Failures name file:line, what was found, which columns are expected.
 namespace zonepack {
 
 // `stamp received x y yaw sigma_x sigma_y sigma_yaw`: seconds, metres, radians; base_link in map.
 // In order of reception (lines of equal `received` keep their order). Poses and sigmas may be
-// anything a number can be, nan too: judging them is the filter's part. Nothing on error; `fault`
-// says why.
-std::optional<std::vector<PoseCorrection>> read_corrections(const std::string& path,
-                                                            std::string& fault);
+// anything a number can be, nan too: judging them is the filter's part.
+Outcome<std::vector<PoseCorrection>> read_corrections(const std::string& path);
 
 // Where the robot really was.
 class TruthTrack {
@@ -44,6 +43,6 @@ class TruthTrack {
 
 // `t x y z qx qy qz qw`, further columns ignored; stamps must not step back. z is not used; of the
 // rotation (a unit quaternion to 1 %) only the heading.
-std::optional<TruthTrack> read_truth(const std::string& path, std::string& fault);
+Outcome<TruthTrack> read_truth(const std::string& path);
 
 }  // namespace zonepack

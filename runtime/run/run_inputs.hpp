@@ -7,24 +7,15 @@
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
+#include "platform/base/failure.hpp"
 #include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/odometry/pose.hpp"
 #include "runtime/run/map_model.hpp"
 #include "runtime/run/run_files.hpp"
+#include "runtime/run/run_start.hpp"
 #include "runtime/settings/settings.hpp"
 
 namespace zonepack {
-
-// Where a run starts: the first fix, the true pose, or a pose that was given.
-struct StartChoice {
-  enum class Kind : std::uint8_t { kFix, kTruth, kPose };
-  Kind kind = Kind::kFix;
-  Pose2 pose;
-};
-
-// "fix", "truth", or "X,Y,YAW" in metres and degrees; nothing for other texts.
-std::optional<StartChoice> parse_start(const std::string& text);
 
 // What the command lines of `zoned replay` and `zoned run` have in common; empty paths: not given.
 struct RunChoices {
@@ -44,13 +35,10 @@ struct RunInputs {
   std::optional<TruthTrack> truth;
 };
 
-// A complete message for the first thing that is wrong, or nothing.
-std::optional<std::string> read_run_inputs(const RunChoices& choices, RunInputs& inputs);
+// Fails at the first thing that is wrong.
+Outcome<RunInputs> read_run_inputs(const RunChoices& choices);
 
 CycleConfig cycle_config(const Settings& settings);
 MapTerms map_terms(const RunChoices& choices, const Settings& settings);
-
-// Where the robot truly is at the start; truth may begin a little after the bus.
-std::optional<Pose2> first_truth(const TruthTrack* truth, std::int64_t start_ns);
 
 }  // namespace zonepack

@@ -24,13 +24,12 @@ CycleRecord record_of(std::int64_t now_ns, const CycleState& state, const Reside
 
 RunStatistics::RunStatistics(const ZoneGraph& graph, std::span<const ZoneNeed> needs,
                              const TruthTrack* truth, std::int64_t period_ns,
-                             const ResidencyLimits& limits, EventSink& log)
+                             const ResidencyLimits& limits)
     : graph_(&graph),
       needs_(needs),
       truth_(truth),
       period_ns_(period_ns),
       limits_(limits),
-      log_(log),
       held_(needs.size(), Held::kNot) {}
 
 void RunStatistics::change_map(const ZoneGraph& graph, std::span<const ZoneNeed> needs,
@@ -62,7 +61,6 @@ void RunStatistics::begin_with(ZoneId zone) noexcept {
 }
 
 void RunStatistics::on_event(const Event& event) noexcept {
-  log_.on_event(event);
   if (keeps_trace_) {
     trace_.events.push_back(
         {static_cast<double>(event.t_ns) * 1e-9, to_string(event.kind), drawn(event.zone)});

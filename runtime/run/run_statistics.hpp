@@ -31,20 +31,23 @@ CycleRecord record_of(std::int64_t now_ns, const CycleState& state, const Reside
 //
 // It keeps its own account of what is charged, zone by zone, from the events alone, and does not
 // believe the sums that Residency keeps: a cycle in which the two differ is a violation, like one
-// over a limit. The robot's own zone is the zone that holds its true position (on no zone's ground
-// the one before), or the tracker's where there is no truth.   Threads: one; allocates.
+// over a limit. The robot's own zone is the zone that holds its true position (the one before when
+// that is on no zone's ground), or the tracker's where there is no truth.
+//
+// Threads: one.
+// Memory: allocates; bounded by zones and cycles without a trace, grows with the run with one.
 class RunStatistics final : public EventSink {
  public:
-  // truth may be null; everything must outlive this object. Events are passed on to `log`.
+  // truth may be null; everything must outlive this object.
   RunStatistics(const ZoneGraph& graph, std::span<const ZoneNeed> needs, const TruthTrack* truth,
-                std::int64_t period_ns, const ResidencyLimits& limits, EventSink& log);
+                std::int64_t period_ns, const ResidencyLimits& limits);
 
   // Another map is in use from the next event on. Drawings stay on the first one's ground; its
   // zones go by their names there.
   void change_map(const ZoneGraph& graph, std::span<const ZoneNeed> needs,
                   const ResidencyLimits& limits);
 
-  // A zone that is resident before the first cycle, of which no event tells.
+  // A zone that is resident before the first cycle, which no event reports.
   void begin_with(ZoneId zone) noexcept;
 
   void on_event(const Event& event) noexcept override;
@@ -74,7 +77,6 @@ class RunStatistics final : public EventSink {
   const TruthTrack* truth_;
   std::int64_t period_ns_;
   ResidencyLimits limits_;
-  EventSink& log_;
 
   std::vector<Held> held_;                // by ZoneId
   std::vector<std::string> drawn_names_;  // of the first map; empty until another is in use

@@ -178,16 +178,22 @@ std::string summary_table(const RunSummary& s) {
   return text;
 }
 
-std::optional<std::string> write_summary(const RunSummary& summary, const std::string& json_path) {
+Outcome<void> check_limits(const RunSummary& summary) {
+  if (summary.budget_violations == 0) return {};
+  return failure("a limit was exceeded in " + std::to_string(summary.budget_violations) + " cycles",
+                 ErrorCode::kTooLarge);
+}
+
+Outcome<void> write_summary(const RunSummary& summary, const std::string& json_path) {
   if (json_path == "-") {
     std::cout << summary_json(summary);
-    return std::nullopt;
+    return {};
   }
   std::cout << summary_table(summary);
-  if (json_path.empty()) return std::nullopt;
+  if (json_path.empty()) return {};
   const auto written = write_file_atomically(json_path, summary_json(summary));
-  if (written) return std::nullopt;
-  return json_path + ": cannot be written: " + to_string(written.error().code);
+  if (!written) return cannot_write(json_path, written.error());
+  return {};
 }
 
 }  // namespace zonepack

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 
+#include "platform/base/failure.hpp"
 #include "runtime/run/run_summary.hpp"
 
 namespace zonepack {
@@ -16,7 +16,9 @@ std::string summary_json(const RunSummary& summary);
 std::string summary_table(const RunSummary& summary);
 
 // Prints the table, and writes the JSON to a file; "-" prints the JSON instead; "" writes none.
-// A complete message when the file cannot be written.
-std::optional<std::string> write_summary(const RunSummary& summary, const std::string& json_path);
+Outcome<void> write_summary(const RunSummary& summary, const std::string& json_path);
+
+// Fails when the run exceeded a limit.
+Outcome<void> check_limits(const RunSummary& summary);
 
 }  // namespace zonepack

@@ -13,7 +13,7 @@ namespace {
 using flatbuffers::FlatBufferBuilder;
 using flatbuffers::Offset;
 
-// A page is full when so much of a message is used: what may follow is shorter than the rest.
+// A page is full when this much of a message is used: whatever may follow fits in the rest.
 constexpr std::size_t kPageBytes = kMostMessageBytes - 2048;
 constexpr std::size_t kMostChanges = 1000;
 constexpr std::size_t kMostRouteZones = 128;
@@ -122,6 +122,7 @@ Message answer_nearest(MessageBuilder& to, std::uint64_t id, ServedMap& map,
       [&](ZoneId zone) { return !ask.resident_only() || map.zones[zone].resident(); }, found);
   if (!complete) return to.fault(id, wire::Fault::Failed, to_string(complete.error().code));
   std::vector<wire::Signature> rows;
+  rows.reserve(found.size());
   for (const NodeStore::Found& entry : found) {
     rows.push_back(signature_row(entry.node, entry.zone, entry.distance_m));
   }
@@ -146,7 +147,7 @@ Message answer_route(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
                                         count < route.zones.size(), hinted));
 }
 
-Message tell_events(MessageBuilder& to, const ServedMap& map, std::span<const Event>& events) {
+Message events_notice(MessageBuilder& to, const ServedMap& map, std::span<const Event>& events) {
   FlatBufferBuilder& builder = to.builder();
   std::vector<Offset<wire::Event>> rows;
   std::size_t count = 0;

@@ -12,18 +12,17 @@
 #include "runtime/serve/served_map.hpp"
 #include "runtime/zones/route.hpp"
 
-// Answers to questions, as messages. What is asked comes from outside, so every number is held
-// against its bound; the answer to what cannot be answered is a fault. No message is longer than
-// kMostMessageBytes.
+// Answers to questions, as messages. Requests come from outside, so every number is checked against
+// its bound; one that cannot be answered gets a fault. No message is longer than kMostMessageBytes.
 namespace zonepack {
 
-// What the server counts of itself.
+// What the server counts about itself.
 struct ServerCounters {
   std::uint64_t requests = 0;
   std::uint64_t clients_refused = 0;  // there were too many
   std::uint64_t clients_dropped = 0;  // for not reading, or not saying hello
-  std::uint64_t throttled = 0;        // times that a client had asked for all it may
-  std::uint64_t malformed = 0;        // messages that were none
+  std::uint64_t throttled = 0;        // times that a client had used up its allowance
+  std::uint64_t malformed = 0;        // bytes that were not a message
   std::uint64_t events_undelivered = 0;
   std::uint64_t not_keeping_up = 0;  // events of that kind
   std::uint64_t map_changes = 0, map_refusals = 0;
@@ -50,10 +49,10 @@ Message answer_route(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
                      bool hinted);
 
 // As many events as fit, which are then taken off the front of `events`.
-Message tell_events(MessageBuilder& to, const ServedMap& map, std::span<const Event>& events);
+Message events_notice(MessageBuilder& to, const ServedMap& map, std::span<const Event>& events);
 
-// The fault that tells of an error of the control thread or of reading; and, for zones that are not
-// there, one that tells which.
+// The fault for an error of the control thread or of reading; and, for a zone that does not exist,
+// one that names it.
 wire::Fault fault_of(const Error& error) noexcept;
 Message no_such_zone(MessageBuilder& to, std::uint64_t id, std::uint32_t zone,
                      const flatbuffers::String* name);

@@ -55,7 +55,7 @@ Result<void> CommandRouter::post(ClientKey client, std::uint64_t request_id, Com
 }
 
 void CommandRouter::settle(std::int64_t monotonic_ns, std::int64_t run_ns, std::int64_t lease_ns,
-                           const std::function<void(const Settled&)>& tell) {
+                           const std::function<void(const Settled&)>& deliver) {
   CommandReply reply;
   while (replies_.pop(reply)) {
     if (reply.map != 0 && reply.map != map_) continue;  // of a map that is gone, like its leases
@@ -69,14 +69,14 @@ void CommandRouter::settle(std::int64_t monotonic_ns, std::int64_t run_ns, std::
     note(pending, reply, run_ns + lease_ns);
     Settled settled = pending.settled;
     settled.reply = reply;
-    if (settled.client != 0) tell(settled);
+    if (settled.client != 0) deliver(settled);
   }
   for (std::size_t i = pending_.size(); i-- > 0;) {
     if (pending_[i].give_up_ns > monotonic_ns) continue;
     Settled settled = pending_[i].settled;
     settled.reply.error = {ErrorCode::kBusy, 0};
     pending_.erase(pending_.begin() + static_cast<std::ptrdiff_t>(i));
-    if (settled.client != 0) tell(settled);
+    if (settled.client != 0) deliver(settled);
   }
   for (std::size_t i = held_.size(); i-- > 0;) {
     if (held_[i].ends_ns < run_ns) drop_lease(i);
@@ -130,7 +130,7 @@ void CommandRouter::drop_lease(std::size_t index) {
   held_.erase(held_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
-// One that finds no place any more ends by itself, at its deadline.
+// One for which there is no room ends by itself at its deadline.
 void CommandRouter::release_later(const Lease& lease) {
   if (to_release_.size() < kMostLeases) to_release_.push_back(lease);
 }

@@ -12,12 +12,14 @@
 
 namespace zonepack {
 
-// Takes commands of clients to the control thread and its replies back, and remembers who holds
-// which lease, so that a client's end is the end of its leases.
+// Passes clients' commands to the control thread and its replies back, and remembers who holds
+// which lease, so that a client's leases end with it.
 //
-// The control thread is never waited for: a full queue refuses the command, an answer that does not
-// come in kPatience_ns is given up. Threads: one, the server's. Bounds: kMostPending commands,
-// kMostLeases leases.
+// It never waits for the control thread: a full queue refuses the command, and a reply that does
+// not come within kPatience_ns is given up.
+//
+// Threads: one, the server's.
+// Bounds: kMostPending commands, kMostLeases leases.
 class CommandRouter {
  public:
   static constexpr std::size_t kMostPending = 256;
@@ -26,7 +28,7 @@ class CommandRouter {
 
   using ClientKey = std::uint64_t;  // never used twice
 
-  // Who asked, what for, and what became of it. kBusy: no answer in time.
+  // Who asked, what for, and the outcome. kBusy: no answer in time.
   struct Settled {
     ClientKey client = 0;
     std::uint64_t request_id = 0;
@@ -36,25 +38,25 @@ class CommandRouter {
 
   CommandRouter(SpscQueue<Command>& commands, SpscQueue<CommandReply>& replies);
 
-  // The table of the map in use, told of pins and leases, and the map's number.
+  // The table of the map in use, which is updated with pins and leases, and the map's number.
   void use(ZoneTable& zones, std::uint32_t map) noexcept {
     zones_ = &zones;
     map_ = map;
   }
 
-  // kBusy: too much is under way; kTooLarge: too many leases; kNotFound: a release of what is not
-  // this client's.
+  // kBusy: too much is under way; kTooLarge: too many leases; kNotFound: a release of a lease that
+  // is not this client's.
   Result<void> post(ClientKey client, std::uint64_t request_id, Command command,
                     std::int64_t monotonic_ns);
 
-  // Takes the replies that came. run_ns: the run's clock, by which leases end after lease_ns.
+  // Passes on the replies that came. run_ns: the run's clock, by which leases end after lease_ns.
   void settle(std::int64_t monotonic_ns, std::int64_t run_ns, std::int64_t lease_ns,
-              const std::function<void(const Settled&)>& tell);
+              const std::function<void(const Settled&)>& deliver);
 
-  // Releases what it holds or still gets.
+  // Releases what the client holds or is yet to get.
   void client_gone(ClientKey client);
 
-  // Zone numbers mean other zones from here on: leases are over, replies under way are refused.
+  // Zone numbers mean other zones from here on: leases end, replies under way are refused.
   void map_changed();
 
   std::size_t pending() const noexcept { return pending_.size(); }

@@ -18,9 +18,9 @@ struct ClockReading {
   std::int64_t run_ns() const noexcept { return realtime_ns - offset_ns; }
 };
 
-// A pose that another program gave, on the run's clock; nothing for what is not a pose: a number
-// that is not finite, a variance that is not positive, correlations over 1. The filter takes the
-// standard deviations; correlations are checked and not used.
+// A pose that another program gave, on the run's clock; nothing when it is not a valid pose: a
+// number that is not finite, a variance that is not positive, correlations over 1. The filter takes
+// the standard deviations; correlations are checked and not used.
 std::optional<PoseCorrection> correction_of(const wire::GivePose& given,
                                             const ClockReading& now) noexcept;
 

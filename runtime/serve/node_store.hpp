@@ -17,12 +17,13 @@
 
 namespace zonepack {
 
-// Where every signature of the map stands, loaded or not: the coarse nodes of the manifest. They
+// The position of every signature of the map, loaded or not: the coarse nodes of the manifest. They
 // stay in the file; memory holds a checksum and a box for each block of kBlockNodes, so that what
-// is read later is known to be what was read at the start.
+// is read later is known to be unchanged since the start.
 //
-// Bounds: a read() brings one block (10 KiB), nearest() at most kMostBlocks and looks at every
-// block's box. Threads: one, the server's; reads the file.
+// Bounds: read() reads one block (10 KiB), nearest() at most kMostBlocks, and it looks at every
+// block's box.
+// Threads: one, the server's; reads the file.
 class NodeStore {
  public:
   static constexpr std::uint32_t kBlockNodes = 512;
@@ -40,8 +41,8 @@ class NodeStore {
   };
 
   // Reads and checks the manifest of the catalog's folder once more; all of it is in memory until
-  // this returns. kMismatch: it is another version than the catalog's; and what check_manifest
-  // says.
+  // this returns. kMismatch: it is another version than the catalog's; and the errors of
+  // check_manifest.
   static Result<NodeStore> open(const Catalog& catalog);
 
   // 0 for a map that was packed without nodes.
@@ -51,9 +52,9 @@ class NodeStore {
   // call. kNotFound from the end on; kIo, kTruncated; kBadChecksum: the file was changed in place.
   Result<std::span<const fb::Node>> read(ZoneId zone, std::uint32_t first);
 
-  // The nodes nearest to a point in the plane: by distance, then zone, then id. `accept(zone)`
-  // tells whose nodes count. False when kMostBlocks did not suffice to be sure; what was found
-  // is still right about itself. Errors as of read().
+  // The nodes nearest to a point in the plane: by distance, then zone, then id. `accept(zone)` says
+  // whose nodes count. False when kMostBlocks were too few to be sure that these are the nearest;
+  // each is correct in itself. Errors as of read().
   Result<bool> nearest(const Query& query, const std::function<bool(ZoneId)>& accept,
                        std::vector<Found>& found);
 

@@ -33,7 +33,7 @@ void RequestHandler::take(Session& from, LocalSocket::Received& received, Messag
     ++counters_.malformed;
     MessageBuilder message;
     from.answer(message.fault(request ? (*request)->id() : 0, wire::Fault::Malformed));
-    // Who has not said hello does not speak this protocol.
+    // A client that has not said hello does not speak this protocol.
     if (!from.greeted) from.drop();
     return;
   }
@@ -119,7 +119,7 @@ void RequestHandler::handle(const Call& call) {
   }
 }
 
-// What anyone may ask; false when it is none of these.
+// Handles what any client may ask; false for other requests.
 bool RequestHandler::look(const Call& call) {
   const wire::Request& request = call.request;
   MessageBuilder message;
@@ -150,7 +150,7 @@ bool RequestHandler::look(const Call& call) {
       call.from.answer(answer_nearest(message, call.id(), call.map, *request.body_as_AskNearest()));
       return true;
     case RequestBody::AskSignatures:
-      tell_signatures(call);
+      send_signatures(call);
       return true;
     case RequestBody::Subscribe:
       subscribe(call);
@@ -163,7 +163,7 @@ bool RequestHandler::look(const Call& call) {
   }
 }
 
-void RequestHandler::tell_signatures(const Call& call) {
+void RequestHandler::send_signatures(const Call& call) {
   const wire::AskSignatures& ask = *call.request.body_as_AskSignatures();
   const ZoneId zone = call.map.find(ask.zone(), ask.name());
   MessageBuilder message;
@@ -189,7 +189,7 @@ void RequestHandler::plan(const Call& call) {
   const wire::AskRoute& ask = *call.request.body_as_AskRoute();
   if (ask.hint() && call.from.looking_only) return refuse(call, wire::Fault::Denied);
   const LiveStatus status = ports_.status.load();
-  // Without a zone to start from: the robot's own, from where it stands.
+  // Without a zone to start from: the robot's own, from its position.
   const bool from_robot = ask.from() == kNoZone && ask.from_name() == nullptr;
   const ZoneId from = from_robot ? status.state.zone : call.map.find(ask.from(), ask.from_name());
   const ZoneId to = call.map.find(ask.to(), ask.to_name());
@@ -219,7 +219,7 @@ void RequestHandler::plan(const Call& call) {
     order.route_length =
         static_cast<std::uint32_t>(std::min(route->zones.size(), Command::kMostRoute));
     std::copy_n(route->zones.begin(), order.route_length, order.route.begin());
-    // The answer is the route; the command's own reply tells nobody.
+    // The answer is the route; the command's own reply goes to nobody.
     if (const auto posted = router_.post(0, 0, order, call.monotonic_ns); !posted) {
       return refuse(call, fault_of(posted.error()));
     }
@@ -277,7 +277,7 @@ void RequestHandler::start_dump(const Call& call) {
     return refuse(call, wire::Fault::Malformed, "expected one descriptor to write to");
   }
   if (dump_.running()) return refuse(call, wire::Fault::Busy, "another recording is being written");
-  // Shared, because work is copied on its way into the thread.
+  // Shared, because the job is copied on its way into the thread.
   auto file = std::make_shared<Descriptor>(std::move(call.received.descriptors[0]));
   const auto started = dump_.start([file, write = ports_.dump] { return write(file->get()); });
   if (!started) return refuse(call, wire::Fault::Failed, "no thread could be started");
@@ -288,10 +288,10 @@ void RequestHandler::start_dump(const Call& call) {
 std::optional<RequestHandler::Dump> RequestHandler::poll_dump() {
   auto result = dump_.poll();
   if (!result) return std::nullopt;
-  return Dump{dump_client_, dump_request_, std::move(*result)};
+  return Dump{dump_client_, dump_request_, *result};
 }
 
-void RequestHandler::tell(Session& to, const Dump& dump) {
+void RequestHandler::deliver(Session& to, const Dump& dump) {
   MessageBuilder message;
   if (!dump.bytes) {
     return to.answer(
@@ -300,7 +300,7 @@ void RequestHandler::tell(Session& to, const Dump& dump) {
   to.answer(message.reply(dump.request_id, wire::CreateDumped(message.builder(), *dump.bytes)));
 }
 
-void RequestHandler::tell(Session& to, const CommandRouter::Settled& settled) const {
+void RequestHandler::deliver(Session& to, const CommandRouter::Settled& settled) const {
   MessageBuilder message;
   const std::uint64_t id = settled.request_id;
   if (settled.reply.error.code != ErrorCode::kOk) {

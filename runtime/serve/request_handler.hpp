@@ -13,7 +13,7 @@
 
 namespace zonepack {
 
-// Does what a request asks, or hands it on: to the control thread, whose answer settle() passes
+// Does what a request asks, or passes it on: to the control thread, whose reply settle() passes
 // back, or to the thread that writes a recording.
 //
 // Threads: one, the server's.
@@ -27,17 +27,17 @@ class RequestHandler {
 
   CommandRouter& router() noexcept { return router_; }
 
-  // Tells `from` what became of its command.
-  void tell(Session& to, const CommandRouter::Settled& settled) const;
+  // Sends `to` the outcome of its command.
+  void deliver(Session& to, const CommandRouter::Settled& settled) const;
 
-  // The recording that was asked for is written.
+  // The requested recording is written.
   struct Dump {
     CommandRouter::ClientKey client = 0;
     std::uint64_t request_id = 0;
     Result<std::uint64_t> bytes;
   };
   std::optional<Dump> poll_dump();
-  static void tell(Session& to, const Dump& dump);
+  static void deliver(Session& to, const Dump& dump);
 
   bool busy() const noexcept { return router_.pending() > 0 || dump_.running(); }
 
@@ -56,7 +56,7 @@ class RequestHandler {
   void handle(const Call& call);
   bool look(const Call& call);
   void subscribe(const Call& call);
-  void tell_signatures(const Call& call);
+  void send_signatures(const Call& call);
   void plan(const Call& call);
   void command(const Call& call, Command command);
   void command_on_zone(const Call& call, Command::Kind kind, std::uint32_t zone,

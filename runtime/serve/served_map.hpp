@@ -13,17 +13,16 @@
 
 namespace zonepack {
 
-// The map that questions are answered from. Catalog and graph are those of the run and outlive
-// this.
+// The map from which requests are answered. Catalog and graph belong to the run and outlive this.
 struct ServedMap {
   const Catalog& catalog;
   const ZoneGraph& graph;
-  std::uint32_t serial = 1;  // one more with every change of map; never 0
+  std::uint32_t serial = 1;  // incremented at every change of map; never 0
   std::uint32_t epoch = 0;   // of the shared memory while it is in use; 0: there is none
   ZoneTable zones;
-  std::optional<NodeStore> nodes;  // nothing when the manifest cannot be read any more
+  std::optional<NodeStore> nodes;  // nothing when the manifest can no longer be read
 
-  // By number or, where one is given, by name; kNoZone for what is not there.
+  // By number or, where one is given, by name; kNoZone when there is none.
   ZoneId find(std::uint32_t zone, const flatbuffers::String* name) const noexcept {
     if (name != nullptr) return catalog.find(view_of(name));
     return zone < catalog.zones.size() ? zone : kNoZone;

@@ -11,23 +11,25 @@
 namespace zonepack {
 namespace {
 
-constexpr std::uint32_t kFirstSession = 16;  // tokens of the poller; listeners have those below
+constexpr std::uint32_t kFirstSession = 16;  // tokens of the poller; listeners have lower ones
 constexpr std::size_t kMostEventsAtOnce = 256;
 constexpr std::int64_t kAcceptPause_ns = 100'000'000;
 
-std::string listen_fault(const std::string& path, const Error& error) {
-  const std::string which = "socket " + path + ": ";
+std::string listen_reason(const Error& error) {
   switch (error.code) {
     case ErrorCode::kExists:
-      return which +
-             "another zoned listens there, or it is a file of another kind; stop the other,"
+      return "another zoned listens there, or it is a file of another kind; stop the other,"
              " or give this one its own serve.socket";
     case ErrorCode::kTooLarge:
-      return which + "the path is over " + std::to_string(LocalListener::kMostPath) + " bytes";
+      return "the path is over " + std::to_string(LocalListener::kMostPath) + " bytes";
     default:
-      return which + "cannot be made: " + std::strerror(static_cast<int>(error.detail)) +
+      return std::string("cannot be made: ") + std::strerror(static_cast<int>(error.detail)) +
              "; the folder must exist and be writable for this user (serve.socket)";
   }
+}
+
+Failure cannot_listen(const std::string& path, const Error& error) {
+  return failure("socket " + path + ": " + listen_reason(error), error.code);
 }
 
 std::unique_ptr<ServedMap> served_map(const Catalog& catalog, const ZoneGraph& graph,
@@ -60,44 +62,41 @@ Server::Server(const ServeSettings& settings, const ServerPorts& ports, Poller p
 
 Server::~Server() = default;
 
-std::unique_ptr<Server> Server::open(const ServeSettings& settings, const ServerPorts& ports,
-                                     const Catalog& catalog, const ZoneGraph& graph,
-                                     std::span<const ZoneId> pinned, std::string& fault) {
+Outcome<std::unique_ptr<Server>> Server::open(const ServeSettings& settings,
+                                              const ServerPorts& ports, const Catalog& catalog,
+                                              const ZoneGraph& graph,
+                                              std::span<const ZoneId> pinned) {
   Result<Poller> poller = Poller::create();
   if (!poller) {
-    fault = std::string("sockets cannot be waited for: ") +
-            std::strerror(static_cast<int>(poller.error().detail));
-    return nullptr;
+    return failure("sockets cannot be waited for: " + reason_text(poller.error()),
+                   poller.error().code);
   }
   std::unique_ptr<Server> server(new Server(settings, ports, std::move(poller).value()));
   server->map_ = served_map(catalog, graph, 1, ports.map_epoch, pinned);
   server->handler_.router().use(server->map_->zones, server->map_->serial);
-  if (!server->add_listener(settings.socket, settings.mode, false, fault) ||
-      !server->add_listener(settings.looking_socket, settings.looking_mode, true, fault)) {
-    return nullptr;
+  auto listening = server->add_listener(settings.socket, settings.mode, false);
+  if (listening) {
+    listening = server->add_listener(settings.looking_socket, settings.looking_mode, true);
   }
+  if (!listening) return listening.error();
   return server;
 }
 
-bool Server::add_listener(const std::string& path, const std::string& mode, bool looking_only,
-                          std::string& fault) {
-  if (path.empty()) return true;
+Outcome<void> Server::add_listener(const std::string& path, const std::string& mode,
+                                   bool looking_only) {
+  if (path.empty()) return {};
   const std::optional<unsigned> bits = socket_mode(mode);
   if (!bits) {
-    fault =
-        "socket " + path + ": mode \"" + mode + "\" is none; expected octal digits such as 0660";
-    return false;
+    return failure("socket " + path + ": mode \"" + mode +
+                   "\" is none; expected octal digits such as 0660");
   }
   Result<LocalListener> listener = LocalListener::listen(path, *bits);
-  if (!listener) {
-    fault = listen_fault(path, listener.error());
-    return false;
-  }
+  if (!listener) return cannot_listen(path, listener.error());
   listeners_.push_back({std::move(listener).value(), looking_only});
   const auto token = static_cast<std::uint32_t>(listeners_.size() - 1);
   const auto added = poller_.add(listeners_.back().socket.fd(), token, Poller::kReadable);
-  if (!added) fault = listen_fault(path, added.error());
-  return added.ok();
+  if (!added) return cannot_listen(path, added.error());
+  return {};
 }
 
 void Server::offer_map(std::uint32_t serial, const Catalog& catalog, const ZoneGraph& graph,
@@ -161,7 +160,7 @@ void Server::turn(int timeout_ms) {
     if (one.readable || one.closed) receive(*session);
     if (one.closed) session->drop();
   }
-  tell_poses();
+  send_poses();
   tidy();
 }
 
@@ -171,7 +170,7 @@ void Server::take_events() {
   for (Event event; ports_.events.pop(event);) {
     const bool changed = event.kind == EventKind::kMapChanged;
     if (event.map != map_->serial && !changed) {
-      tell_subscribers();
+      notify_subscribers();
       if (offered_ && offered_->serial == event.map) change_map();  // map_changed was lost
       if (event.map != map_->serial) continue;
     }
@@ -183,10 +182,10 @@ void Server::take_events() {
       ++counters_.map_refusals;
     }
     if (!changed && events_.size() < kMostEventsAtOnce) continue;
-    tell_subscribers();
+    notify_subscribers();
     if (changed) change_map();
   }
-  tell_subscribers();
+  notify_subscribers();
   if (lost == lost_events_) return;
   if (ports_.resident_generation) map_->zones.resync(ports_.resident_generation);
   for (auto& session : sessions_) {
@@ -195,14 +194,14 @@ void Server::take_events() {
   lost_events_ = lost;
 }
 
-// The events gathered so far, which are of the map in use.
-void Server::tell_subscribers() {
+// Sends the events gathered so far, which belong to the map in use.
+void Server::notify_subscribers() {
   const bool anyone = std::ranges::any_of(
       sessions_, [](const auto& session) { return session && session->wants_events; });
   for (std::span<const Event> rest = events_; anyone && !rest.empty();) {
     MessageBuilder message;
     const std::size_t before = rest.size();
-    const Message notice = tell_events(message, *map_, rest);
+    const Message notice = events_notice(message, *map_, rest);
     for (auto& session : sessions_) {
       if (!session || !session->wants_events) continue;
       const std::uint64_t lost_before = session->lost_events();
@@ -217,11 +216,11 @@ void Server::settle() {
   handler_.router().settle(now_ns_, ports_.status.load().now_ns, ports_.lease_ns,
                            [this](const CommandRouter::Settled& settled) {
                              if (Session* const session = session_of(settled.client)) {
-                               handler_.tell(*session, settled);
+                               handler_.deliver(*session, settled);
                              }
                            });
   if (const auto dump = handler_.poll_dump()) {
-    if (Session* const session = session_of(dump->client)) RequestHandler::tell(*session, *dump);
+    if (Session* const session = session_of(dump->client)) RequestHandler::deliver(*session, *dump);
   }
   counters_.leases = static_cast<std::uint32_t>(handler_.router().leases());
 }
@@ -236,7 +235,8 @@ void Server::accept(std::size_t listener) {
   for (std::size_t i = 0; i < kMostAccepts; ++i) {
     Result<LocalSocket> socket = listeners_[listener].socket.accept();
     if (!socket) {
-      // Out of descriptors, say: who waits goes on waiting, and this thread does not spin.
+      // Out of descriptors, for example: waiting clients keep waiting, and this thread does not
+      // spin.
       if (socket.error().code != ErrorCode::kBusy) pause_or_resume(listeners_[listener], listener);
       return;
     }
@@ -245,8 +245,8 @@ void Server::accept(std::size_t listener) {
     if (place == sessions_.end()) {
       ++counters_.clients_refused;
       MessageBuilder message;
-      // If even this finds no room, closing says it too.
-      [[maybe_unused]] const auto told =
+      // If there is no room even for this, closing says it too.
+      [[maybe_unused]] const auto sent =
           socket->send(message.fault(0, wire::Fault::TooMany, "too many clients (serve.clients)"));
       continue;
     }
@@ -278,7 +278,7 @@ void Server::receive(Session& session) {
   }
 }
 
-void Server::tell_poses() {
+void Server::send_poses() {
   const auto wants = [this](const auto& session) {
     return session && session->pose_period_ns > 0 && session->next_pose_ns <= now_ns_;
   };
@@ -288,8 +288,8 @@ void Server::tell_poses() {
   for (auto& session : sessions_) {
     if (!wants(session)) continue;
     session->offer(notice);
-    session->next_pose_ns =
-        std::max(session->next_pose_ns + session->pose_period_ns, now_ns_ - kTurn_ms * 1'000'000);
+    session->next_pose_ns = std::max(session->next_pose_ns + session->pose_period_ns,
+                                     now_ns_ - std::int64_t{kTurn_ms} * 1'000'000);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "platform/local_socket.hpp"
 #include "platform/poller.hpp"
 #include "runtime/serve/answers.hpp"
@@ -20,14 +21,15 @@
 namespace zonepack {
 
 // Serves other programs over local sockets (PROTOCOL.md). The control thread leaves a status and
-// events for it and takes commands and poses when it likes: nothing that a client does or leaves
-// undone holds it up.
+// events for it and takes commands and poses when it likes: nothing that a client does or fails to
+// do holds it up.
 //
 // Bounds: settings.clients at once; accepting kMostAccepts and, for each client, kMostRequests a
-// turn; what Session, CommandRouter and NodeStore state. Memory: below 100 KiB, and for each client
-// that does not read up to Session::kMostWaiting here and kKernelBytes and one message in the
-// kernel. Tables that grow with the map are charged with it (table_bytes).
-// Threads: all calls by one, but stop() by any. Does not throw, but may run out of memory.
+// turn; what Session, CommandRouter and NodeStore state.
+// Memory: below 100 KiB, and for each client that does not read up to Session::kMostWaiting here
+// and kKernelBytes and one message in the kernel. Tables that grow with the map are charged with it
+// (table_bytes).
+// Threads: all calls by one, except stop() by any. Does not throw, but may run out of memory.
 class Server {
  public:
   static constexpr int kTurn_ms = 10;          // how late an event, a pose or a reply is at most,
@@ -35,11 +37,11 @@ class Server {
   static constexpr std::size_t kMostAccepts = 16;
   static constexpr std::size_t kMostRequests = 16;
 
-  // Starts to listen. On failure null, and `fault` says why in a complete message: which file, and
-  // what to do. `pinned`: zones pinned from the start.
-  static std::unique_ptr<Server> open(const ServeSettings& settings, const ServerPorts& ports,
-                                      const Catalog& catalog, const ZoneGraph& graph,
-                                      std::span<const ZoneId> pinned, std::string& fault);
+  // Starts to listen; never null. `pinned`: zones pinned from the start.
+  static Outcome<std::unique_ptr<Server>> open(const ServeSettings& settings,
+                                               const ServerPorts& ports, const Catalog& catalog,
+                                               const ZoneGraph& graph,
+                                               std::span<const ZoneId> pinned);
   ~Server();
 
   // One turn: waits for something to do, at most timeout_ms, and does it.
@@ -49,23 +51,23 @@ class Server {
   void run();
   void stop() noexcept;
 
-  // A map that the run is going to be offered, and its number there. It takes the place of the one
-  // in use with the first event that is of it, and is forgotten at map_refused. Clients are told;
-  // leases are over. Which map is served, map() tells.
+  // A map that the run is about to be offered, and its number there. It replaces the one in use
+  // with its first event, and is forgotten at map_refused. Clients are notified; leases end. map()
+  // is the one being served.
   void offer_map(std::uint32_t serial, const Catalog& catalog, const ZoneGraph& graph,
                  std::span<const ZoneId> pinned);
 
-  // The run does not use this map any more, all its events were taken: nor does the server from
-  // here on, even if the event that told so was lost.
+  // The run no longer uses this map, and all its events were taken: the server stops using it too,
+  // even if the event that said so was lost.
   void forget_map(std::uint32_t serial);
 
-  // A command of the daemon itself, through the queue that is the server's. False: no room now.
+  // Posts a command of the daemon itself through the server's queue. False: no room now.
   bool post(const Command& command);
 
   const ServerCounters& counters() const noexcept { return counters_; }
   const ServedMap& map() const noexcept { return *map_; }
 
-  // What a map adds: the tables of zones and of where signatures stand.
+  // What a map adds: the tables of zones and of signatures' positions.
   static ByteCount table_bytes(std::size_t zones, std::uint64_t signatures) noexcept {
     return ZoneTable::table_bytes(zones) + NodeStore::table_bytes(zones, signatures);
   }
@@ -78,16 +80,15 @@ class Server {
   };
 
   Server(const ServeSettings& settings, const ServerPorts& ports, Poller poller);
-  bool add_listener(const std::string& path, const std::string& mode, bool looking_only,
-                    std::string& fault);
-  void tell_subscribers();
+  Outcome<void> add_listener(const std::string& path, const std::string& mode, bool looking_only);
+  void notify_subscribers();
   void take_events();
   void change_map();
   void settle();
   void accept(std::size_t listener);
   void pause_or_resume(Listener& listener, std::size_t token);
   void receive(Session& session);
-  void tell_poses();
+  void send_poses();
   void tidy();
   Session* session_of(std::uint64_t key) noexcept;
 

@@ -16,8 +16,8 @@
 
 namespace zonepack {
 
-// What joins the server to the run: values that the control thread leaves for it, and queues with
-// room or without, so that neither waits for the other. All of it outlives the server, which is the
+// What connects the server to the run: values that the control thread publishes, and queues that
+// may be full, so that neither waits for the other. All of it outlives the server, which is the
 // only one to pop `events` and `replies` and to push to `commands` and `poses`.
 struct ServerPorts {
   const Seqlock<LiveStatus>& status;
@@ -30,11 +30,11 @@ struct ServerPorts {
   int memory_fd = -1;  // open for reading only
   int lock_fd = -1;    // a share of the memory's lock
 
-  std::uint32_t map_epoch = 0;  // of the memory, with the first map; one more with every change
+  std::uint32_t map_epoch = 0;  // of the memory, with the first map; incremented at every change
 
   std::int64_t lease_ns = 0;  // as Residency ends leases
 
-  // Asked when events were lost: what can be read now. Any thread.
+  // Called when events were lost: what can be read now. Any thread.
   ResidentGeneration resident_generation{};
 
   // Writes the recording of the last minutes to a descriptor and returns its bytes. May take long;

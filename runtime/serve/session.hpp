@@ -12,22 +12,24 @@
 
 namespace zonepack {
 
-// One client at the server: what it may still ask for, what waits for it, what it listens to.
+// One client at the server: its remaining allowance, what waits to be sent, what it subscribed to.
 //
 // Bounds: the kernel holds at most kKernelBytes and one message for it, this object kMostWaiting
-// bytes; who does not read is dropped() after kPatience_ns, or after kMostLost events in a row.
+// bytes; a client that does not read is dropped() after kPatience_ns, or after kMostLost events in
+// a row.
 // Threads: one, the server's.
 class Session {
  public:
-  static constexpr std::size_t kKernelBytes = 32 * 1024;
-  static constexpr std::size_t kMostWaiting = 32 * 1024;
+  static constexpr std::size_t kKernelBytes = std::size_t{32} * 1024;
+  static constexpr std::size_t kMostWaiting = std::size_t{32} * 1024;
   static constexpr std::uint64_t kMostLost = 4096;
   static constexpr std::int64_t kPatience_ns = 10'000'000'000;
   static constexpr std::int64_t kHelloWithin_ns = 5'000'000'000;
 
   Session(LocalSocket socket, std::uint64_t key, bool looking_only, std::int64_t now_ns);
 
-  // Requests are paid for: `per_s` a second, at most a quarter of a second's worth saved up.
+  // Requests cost tokens: `per_s` a second, of which at most a quarter of a second's worth is saved
+  // up.
   void refill(std::uint32_t per_s, std::int64_t now_ns) noexcept;
   bool may_ask() const noexcept { return tokens_ >= 1 && waiting_.empty() && !dropped_; }
   bool has_allowance() const noexcept { return tokens_ >= 1; }
@@ -37,22 +39,22 @@ class Session {
   void answer(std::span<const std::byte> message, std::span<const int> descriptors = {});
   void flush(std::int64_t now_ns);
 
-  // Something unasked that is worthless later; false when there is no room for it now.
+  // A notice that is worthless later; false when there is no room for it now.
   bool offer(std::span<const std::byte> message);
 
-  // `count` events in one message; those for which there is no room are lost, and it is told so
-  // before the next that is delivered.
+  // `count` events in one message; if there is no room they are lost, and the client is told before
+  // the next delivery.
   void offer_events(std::span<const std::byte> message, std::uint64_t count);
 
-  // Events that never came here.
+  // Counts events that never got here.
   void lose_events(std::uint64_t count) noexcept;
 
-  // Looks after its deadlines; call once a turn.
+  // Checks its deadlines; call once a turn.
   void check(std::int64_t now_ns) noexcept;
 
   Poller::Interest interest() const noexcept;
 
-  // Its end: it has gone, or (was_late) is sent away for not keeping up.
+  // Ends the session: the client has gone, or (was_late) is sent away for not keeping up.
   void drop() noexcept { dropped_ = true; }
   bool was_late() const noexcept { return late_; }
   bool dropped() const noexcept { return dropped_; }

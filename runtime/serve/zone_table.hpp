@@ -18,8 +18,8 @@ namespace zonepack {
 // The generation of a zone that readers can read now, else nothing.
 using ResidentGeneration = std::function<std::optional<std::uint32_t>(ZoneId)>;
 
-// The state of every zone as events tell it, for whoever asks: the control thread is never asked.
-// And an order of what changed, so that a client can catch up from any point.
+// The state of every zone as events report it, so that the control thread is never asked; and the
+// order of changes, so that a client can catch up from any point.
 //
 // Threads: one, the server's. Does not allocate after construction.
 class ZoneTable {
@@ -43,7 +43,7 @@ class ZoneTable {
 
   void take(const Event& event) noexcept;
 
-  // Events were lost: what is resident is read anew, and nothing counts as wanted until the next
+  // Call when events were lost: residency is read anew, and no zone counts as wanted until the next
   // event about it.
   void resync(const ResidentGeneration& resident);
 
@@ -58,7 +58,7 @@ class ZoneTable {
   std::uint64_t counter() const noexcept { return counter_; }
 
   // The zone whose last change is the first after `since`; kNoZone when there is none. The next
-  // ones are its `newer`s.
+  // ones follow by `newer`.
   ZoneId first_changed_after(std::uint64_t since) const noexcept;
 
   static ByteCount table_bytes(std::size_t zones) noexcept { return zones * sizeof(Row); }

@@ -29,7 +29,7 @@ bool parse_object(std::string_view text, MappedObject& object) {
   return object.bits >= 1 && object.bits <= 64;
 }
 
-// Of CiA 402 and CiA 301; makers' own objects are mostly signed.
+// By CiA 402 and CiA 301; vendors' own objects are mostly signed.
 bool is_unsigned(std::uint32_t index) {
   constexpr std::array<std::uint32_t, 7> kUnsigned = {0x1001, 0x603F, 0x6040, 0x6041,
                                                       0x6079, 0x60FD, 0x60FE};

@@ -11,7 +11,7 @@
 namespace zonepack {
 namespace {
 
-// Words that begin a statement that ends with a semicolon and tells nothing about reading signals.
+// Keywords of statements that end with a semicolon and do not affect reading signals.
 constexpr std::array<std::string_view, 24> kSkipped = {
     "VAL_TABLE_",  "VAL_",           "CM_",
     "EV_",         "ENVVAR_DATA_",   "EV_DATA_",
@@ -37,7 +37,7 @@ bool is_statement_word(const DbcToken& token) {
          (holds(kRead, token.text) || holds(kSkipped, token.text));
 }
 
-// What NS_ lists.
+// A symbol as NS_ lists them.
 bool is_symbol(const DbcToken& token) {
   return token.kind == DbcToken::Kind::kWord &&
          (token.text == "NS_DESC_" || token.text == "SIG_VALTYPE_" || token.text == "SG_MUL_VAL_" ||

@@ -11,35 +11,35 @@
 
 namespace zonepack {
 
-// A place in a DBC file, which moves on as what is expected there is found. Each that is not found
-// becomes a fault with line and column; then the cursor stands on the next line that begins with a
-// statement's word, so that one fault is one message.
+// A position in a DBC file, which advances as the expected tokens are found. A missing one becomes
+// a fault with line and column, and the cursor skips to the next line that begins with a
+// statement's keyword, so that one mistake gives one message.
 class DbcCursor {
  public:
   DbcCursor(std::string_view text, std::string path);
 
-  bool ended() const;  // also after the most faults that are told
+  bool ended() const;  // also once LoadedDbc::kMostFaults were found
   const DbcToken& now() const { return now_; }
-  const DbcToken& begin() const { return begin_; }  // the word of the statement being read
+  const DbcToken& begin() const { return begin_; }  // the keyword of the statement being read
   bool at_statement() const;
-  bool at_symbol() const;  // one of those that NS_ lists
+  bool at_symbol() const;  // one of the symbols that NS_ lists
   void advance();
 
-  // Steps over a statement's first word.
+  // Skips a statement's keyword.
   bool begin_statement();
-  // To behind its semicolon, whatever stands before that.
+  // Skips past the statement's semicolon, whatever comes before it.
   void skip_statement();
   bool end_statement() { return sign(';'); }
 
-  // Each steps over what it names and fills `into`, or is a fault that says what was expected.
+  // Each consumes what it names and fills `into`, or adds a fault that says what was expected.
   bool sign(char wanted);
   bool word(std::string_view& into, const char* what);
   bool number(double& into, const char* what);
   bool whole(std::uint64_t& into, std::uint64_t most, const char* what);
   bool text(std::string_view& into, const char* what);
-  bool fail(const std::string& expected);  // here; always false
+  bool fail(const std::string& expected);  // adds a fault at now(); always false
 
-  void add_fault(const DbcToken& at, const std::string& expected);  // and stays
+  void add_fault(const DbcToken& at, const std::string& expected);  // without moving on
   std::vector<std::string> faults() && { return std::move(faults_); }
 
  private:

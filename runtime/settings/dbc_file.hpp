@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "runtime/odometry/can_signals.hpp"
 
-// DBC files: what frames of a CAN bus hold, by name of message and signal. Read at start; what the
-// control thread decodes with is a plain CanSignal.
+// DBC files: what the frames of a CAN bus hold, by names of messages and signals. Read at start;
+// the control thread decodes with plain CanSignals.
 // Source: Vector Informatik, "DBC File Format Documentation", version 01/2007; extended
 // multiplexing as in Vector's application note AN-ION-1-0521.
 namespace zonepack {
@@ -20,15 +22,15 @@ struct DbcSignal {
 
   std::string name;
   std::string unit;
-  SignalBits bits;  // any numbers: judged when the signal is asked for
+  SignalBits bits;  // any numbers; checked when the signal is asked for
   SignalType type = SignalType::kUnsigned;
   double factor = 1;
   double offset = 0;
-  double least = 0;  // of the value; both 0: not told. Not enforced
+  double least = 0;  // of the value; both 0: not given. Not enforced
   double most = 0;
   bool multiplexer = false;               // M, or m1M
   bool multiplexed = false;               // m1
-  std::int32_t selected_by = kNone;       // index in the message, as SG_MUL_VAL_ tells
+  std::int32_t selected_by = kNone;       // index in the message, from SG_MUL_VAL_
   std::vector<CanSignal::Values> values;  // of its multiplexer that select it
   std::uint32_t line = 0;
   std::uint32_t column = 0;
@@ -58,16 +60,14 @@ class DbcFile {
 
   const std::vector<DbcMessage>& messages() const noexcept { return messages_; }
 
-  // The signal of "Message.Signal". Nothing when there is none or when it cannot be read (does not
-  // fit its message, a float that is not 32 bits long ...); `fault` tells, with file and line.
-  std::optional<DbcFound> find(std::string_view name, std::string& fault) const;
+  // The signal of "Message.Signal". Fails when there is none (kNotFound) or it cannot be read: it
+  // does not fit its message, it is a float that is not 32 bits long. The message names the line.
+  Outcome<DbcFound> find(std::string_view name) const;
 
  private:
-  const DbcMessage* find_message(std::string_view name, std::string& fault) const;
-  const DbcSignal* find_signal(const DbcMessage& message, std::string_view name,
-                               std::string& fault) const;
-  static std::optional<std::string> select(const DbcMessage& message, const DbcSignal& signal,
-                                           CanSignal& result);
+  // Never null.
+  Outcome<const DbcMessage*> find_message(std::string_view name) const;
+  Outcome<const DbcSignal*> find_signal(const DbcMessage& message, std::string_view name) const;
 
   std::string path_;
   std::vector<DbcMessage> messages_;
@@ -76,19 +76,19 @@ class DbcFile {
 struct LoadedDbc {
   static constexpr std::size_t kMostFaults = 20;
 
-  DbcFile file;                     // meaningful without faults only
+  DbcFile file;                     // meaningful only without faults
   std::vector<std::string> faults;  // "file:line:column: expected ..., found ..."
-  std::string text;                 // of the file, when it was read
+  std::string text;                 // of the file, if it could be read
   bool ok() const noexcept { return faults.empty(); }
 };
 
-// Reads a DBC file. Statements that tell nothing about reading signals are skipped. Memory is
-// bounded: at most kLargestDbc bytes, kMostDbcSignals signals. Never throws but for want of memory.
+// Reads a DBC file. Statements that do not affect reading signals are skipped. Memory is bounded:
+// at most kLargestDbc bytes, kMostDbcSignals signals. Throws only when memory runs out.
 inline constexpr std::size_t kLargestDbc = std::size_t{4} << 20;
 inline constexpr std::size_t kMostDbcSignals = 65536;
 LoadedDbc load_dbc(const std::string& path);
 
-// The same for a text; `path` stands in messages.
+// The same for a text; messages name `path`.
 LoadedDbc parse_dbc(std::string_view text, const std::string& path);
 
 }  // namespace zonepack

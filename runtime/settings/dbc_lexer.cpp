@@ -16,7 +16,7 @@ bool is_letter(char c) noexcept {
 }
 bool is_exponent(char c) noexcept { return c == 'e' || c == 'E'; }
 
-// Bytes of the number or word that begins the text; 0 when a sign does.
+// Length of the number or word at the start of the text; 0 when it starts with a sign.
 std::size_t run_length(std::string_view text) noexcept {
   const bool number = is_digit(text[0]) || (text[0] == '.' && text.size() > 1 && is_digit(text[1]));
   if (!number && !is_letter(text[0])) return 0;

@@ -13,8 +13,8 @@ struct DbcToken {
     kEnd,
     kWord,      // letters, digits and _
     kNumber,    // without its sign: 12, 0.5, 1e-3
-    kText,      // what stands between two quotes, line ends included
-    kOpenText,  // a quote that no other one closes
+    kText,      // between two quotes, line ends included
+    kOpenText,  // a quote that is never closed
     kSign,      // any other byte
   };
   Kind kind = Kind::kEnd;
@@ -28,13 +28,13 @@ struct DbcToken {
   bool is_sign(char sign) const noexcept { return kind == Kind::kSign && text.front() == sign; }
 };
 
-// Cuts a DBC file into tokens. Reads any bytes; \" within a text does not end it, as Vector's tools
-// and others write it. Blanks, tabs, CR, LF and a byte order mark part tokens.
+// Cuts a DBC file into tokens. Accepts any bytes; \" within a text does not end it, as Vector's
+// tools and others write it. Blanks, tabs, CR, LF and a byte order mark separate tokens.
 class DbcLexer {
  public:
   explicit DbcLexer(std::string_view bytes) noexcept;
 
-  // The next token; kEnd again and again at the end.
+  // The next token; at the end kEnd, every time.
   DbcToken next() noexcept;
 
  private:

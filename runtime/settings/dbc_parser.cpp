@@ -48,8 +48,8 @@ void DbcParser::statement() {
   }
 }
 
-// NS_ : CM_ BA_DEF_ ... has no end of its own, and what it lists begins statements elsewhere. A
-// symbol stands alone on its line or before another one.
+// NS_ : CM_ BA_DEF_ ... has no terminator, and the words it lists begin statements elsewhere. A
+// symbol is alone on its line or followed by another symbol.
 void DbcParser::symbols() {
   if (!in_.sign(':')) return;
   while (in_.at_symbol()) in_.advance();
@@ -78,7 +78,7 @@ void DbcParser::message() {
   std::uint64_t id = 0;
   std::uint64_t bytes = 0;
   std::string_view name, sender;
-  ignored_ = true;  // signals of a message that is not understood
+  ignored_ = true;  // until the message is understood
   if (!in_.whole(id, 0xFFFFFFFF, "the message's id, a whole number up to 4294967295") ||
       !in_.word(name, "the message's name") || !in_.sign(':') ||
       !in_.whole(bytes, 0xFFFF, "the message's length in bytes") ||

@@ -11,8 +11,8 @@
 
 namespace zonepack {
 
-// Reads the statements of a DBC file. Work is linear in the file's size but for looking up signals
-// by name within their message.
+// Reads the statements of a DBC file. Work is linear in the file's size, except for looking up
+// signals by name within their message.
 class DbcParser {
  public:
   DbcParser(std::string_view text, std::string path);
@@ -43,7 +43,7 @@ class DbcParser {
 
   DbcCursor in_;
   std::vector<DbcMessage> messages_;
-  std::map<std::uint64_t, std::size_t> by_id_;  // of messages, flag included
+  std::map<std::uint64_t, std::size_t> by_id_;  // indices of messages by id, flag included
   bool ignored_ = false;                        // signals that follow belong to no frame
   std::size_t signals_ = 0;
   double default_cycle_ms_ = 0;

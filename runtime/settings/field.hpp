@@ -11,8 +11,8 @@
 
 namespace zonepack {
 
-// One key of a section: its name, where its value goes, what is allowed, what it means. Numbers lie
-// in [least, most]; other kinds do not look at them.
+// One key of a section: its name, where its value goes, what is allowed, what it means. A number
+// must lie in [least, most]; other kinds ignore these.
 template <typename Section>
 struct Field {
   using Member =
@@ -70,7 +70,7 @@ struct EnumWords<SafeLevel> {
   static constexpr const char* kWords[] = {"usual", "active", "inactive"};
 };
 
-// A signal as it stands in the file; defaults out of range must be given.
+// A signal as written in the file; a key whose default is out of range is mandatory.
 struct SignalText {
   std::uint32_t id = 0xFFFFFFFF;
   bool extended = false;
@@ -106,8 +106,8 @@ const Fields<MultiplexText>& multiplex_fields();
 const Fields<CanOpenWatchSettings>& canopen_fields();
 const Fields<CanOpenNodeText>& canopen_node_fields();
 const Fields<OdometrySettings>& odometry_fields();
-const Fields<WheelGeometry>& geometry_fields();       // keys of the section odometry, too
-const Fields<WheelOdometrySettings>& wheel_fields();  // keys of the section odometry, too
+const Fields<WheelGeometry>& geometry_fields();       // also keys of the section odometry
+const Fields<WheelOdometrySettings>& wheel_fields();  // also keys of the section odometry
 const Fields<PoseFilterSettings>& pose_fields();
 const Fields<TrackerSettings>& zones_fields();
 const Fields<PreloadSettings>& preload_fields();
@@ -119,7 +119,7 @@ const Fields<StateSettings>& state_fields();
 const Fields<GpioSettings>& gpio_fields();
 const Fields<OutputLine>& output_line_fields();
 const Fields<InputLine>& input_line_fields();
-const Fields<DockPlace>& dock_fields();      // keys of gpio.dock, too
-const Fields<MarkerPlace>& marker_fields();  // keys of gpio.zone_markers.NAME, too
+const Fields<DockPlace>& dock_fields();      // also keys of gpio.dock
+const Fields<MarkerPlace>& marker_fields();  // also keys of gpio.zone_markers.NAME
 
 }  // namespace zonepack

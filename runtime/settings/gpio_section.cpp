@@ -9,7 +9,7 @@
 namespace zonepack {
 namespace {
 
-// Reads lines, and tells of those that are not named or named twice.
+// Reads lines, and reports those that have no name or share one.
 class LineReader {
  public:
   LineReader(YamlSection& gpio, FaultList& faults) : gpio_(gpio), faults_(faults) {}

@@ -5,7 +5,7 @@
 
 namespace zonepack {
 
-// The section `gpio` of a settings file.
+// Reads the section gpio of a settings file.
 void read_gpio(YamlSection& file, GpioSettings& gpio, FaultList& faults);
 
 }  // namespace zonepack

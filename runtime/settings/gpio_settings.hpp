@@ -10,7 +10,7 @@
 
 namespace zonepack {
 
-// What an output is while no zoned drives it.
+// The level of an output while no zoned drives it.
 enum class SafeLevel : std::uint8_t { kUsual, kActive, kInactive };
 
 struct OutputLine {

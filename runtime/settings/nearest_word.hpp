@@ -7,9 +7,9 @@
 
 namespace zonepack {
 
-// The end of a message about a word that is not known: `; did you mean "b"? Known: a, b, c` when
-// one is near enough (insertions, deletions and replacements, at most a third of the word's length
-// and one more), else `; known: a, b, c`. At most kMostShown words are listed.
+// The end of a message about an unknown word: `; did you mean "b"? Known: a, b, c` when one is near
+// enough (insertions, deletions and replacements: at most one more than a third of the word's
+// length), else `; known: a, b, c`. At most kMostShown words are listed.
 inline constexpr std::size_t kMostShown = 64;
 std::string known_words_text(std::string_view word, const std::vector<std::string>& known);
 

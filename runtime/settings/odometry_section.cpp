@@ -48,7 +48,7 @@ void read_signal_entry(const std::string& name, const YAML::Node& node, FaultLis
   signals.emplace(name, signal);
 }
 
-// Signals by the names that stand in the settings: those of can.signals, then those of the DBC.
+// Signals by the names that the settings use: those of can.signals, then those of the DBC file.
 class SignalNames {
  public:
   SignalNames(CanSettings& can, FaultList& faults) : can_(can), faults_(faults) {}
@@ -82,17 +82,16 @@ class SignalNames {
                     known_words_text(name, known));
   }
 
-  // The longest GenMsgCycleTime of the messages asked for so far; 0 when none tells.
+  // The longest GenMsgCycleTime of the messages asked for so far; 0 when none has one.
   double longest_cycle_s() const noexcept { return longest_cycle_s_; }
 
  private:
   void from_dbc(const YamlSection& section, const char* key, const std::string& name,
                 CanSignal& signal) {
     if (dbc_broken_) return;
-    std::string fault;
-    const std::optional<DbcFound> found = dbc_.find(name, fault);
+    const Outcome<DbcFound> found = dbc_.find(name);
     if (!found) {
-      faults_.add(section.mark_of(key), section.path_of(key), fault);
+      faults_.add(section.mark_of(key), section.path_of(key), found.error().message);
       return;
     }
     longest_cycle_s_ = std::max(longest_cycle_s_, found->cycle_s.value_or(0));
@@ -122,7 +121,8 @@ void read_can(YamlSection& file, const std::string& path, CanSettings& can, Sign
   names.load();
 }
 
-// Frames come once a cycle; two may be lost, and the timeout is seen at the end of a control cycle.
+// A message comes once per its cycle time; two may be lost, and only a control cycle notices the
+// timeout.
 void time_out_by_cycle(double longest_cycle_s, double period_hz, double& timeout_s) {
   constexpr double kCycles = 3;
   constexpr double kLeast_s = 0.01;
@@ -133,7 +133,7 @@ void time_out_by_cycle(double longest_cycle_s, double period_hz, double& timeout
 
 // A key of the section odometry and the signal that it names.
 struct SignalKey {
-  std::string key;  // as in `invert`, too
+  std::string key;  // also as in `invert`
   std::string name;
 };
 
@@ -178,7 +178,7 @@ double metres_per_unit(const OdometrySettings& odometry) {
 bool is_left(const std::string& key) { return key.ends_with("left"); }
 bool is_right(const std::string& key) { return key.ends_with("right"); }
 
-// What of the keys does not go together.
+// Reports keys that contradict each other.
 void check_units(const YamlSection& section, const OdometrySettings& odometry,
                  const std::vector<SignalKey>& keys, FaultList& faults) {
   const auto add = [&](const char* key, const std::string& text) {
@@ -205,6 +205,7 @@ void check_units(const YamlSection& section, const OdometrySettings& odometry,
     if (std::any_of(keys.begin(), keys.end(), [&](const auto& k) { return k.key == word; }))
       continue;
     std::vector<std::string> known;
+    known.reserve(keys.size());
     for (const SignalKey& key : keys) known.push_back(key.key);
     add("invert", "\"" + word + "\" is no signal of this model" + known_words_text(word, known));
   }

@@ -8,12 +8,12 @@
 
 namespace zonepack {
 
-// The sections can and odometry of a settings file at `path`, with the DBC file that can.dbc names:
-// settings.can and settings.odometry. settings.cycle has been read.
+// Reads the sections can and odometry of the settings file at `path`, and the DBC file that can.dbc
+// names, into settings.can and settings.odometry. settings.cycle must have been read.
 void read_odometry(YamlSection& file, const std::string& path, Settings& settings,
                    FaultList& faults);
 
-// `name`, when relative, made relative to the folder of the file at `path`.
+// `name` as a path; when relative, it is relative to the folder of the file at `path`.
 std::string beside(const std::string& path, const std::string& name);
 
 }  // namespace zonepack

@@ -8,19 +8,19 @@
 
 namespace zonepack {
 
-// Who may talk to zoned, and how much of it there may be. The modes of the socket files decide who:
-// octal digits, as chmod takes them.
+// Who may talk to zoned, and how much. The modes of the socket files decide who: octal digits, as
+// for chmod.
 struct ServeSettings {
   std::string socket = "/run/zoned/zoned.sock";  // empty: none
   std::string mode = "0660";
-  std::string looking_socket;  // for looking only; empty: none
+  std::string looking_socket;  // for requests that change nothing; empty: none
   std::string looking_mode = "0666";
   std::uint32_t clients = 64;          // at once, on both sockets
   std::uint32_t requests_per_s = 500;  // of each client; more wait
   double lease_s = 2;                  // how long a lease lasts
 };
 
-// "0660" as permission bits; nothing for what is no mode.
+// "0660" as permission bits; nothing when it is not a mode.
 inline std::optional<unsigned> socket_mode(const std::string& text) noexcept {
   unsigned mode = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), mode, 8);

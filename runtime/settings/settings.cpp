@@ -59,7 +59,7 @@ void read_file(const YAML::Node& root, const std::string& path, Settings& settin
   read_section(file, "map", map_fields(), settings.map, faults);
   read_section(file, "memory", memory_fields(), settings.memory, faults);
   read_section(file, "loading", loading_fields(), settings.loading, faults);
-  // Before the signals, whose timeouts are told in cycles.
+  // Before the signals, whose timeouts count in cycles.
   read_section(file, "cycle", cycle_fields(), settings.cycle, faults);
   read_section(file, "serve", serve_fields(), settings.serve, faults);
   read_odometry(file, path, settings, faults);

@@ -23,8 +23,7 @@
 namespace zonepack {
 
 struct MapSettings {
-  std::string
-      path;  // relative paths are made relative to the settings file's folder; empty: not given
+  std::string path;  // relative to the settings file's folder; empty: not given
 };
 
 struct PayloadChoice {
@@ -35,17 +34,17 @@ struct MemorySettings {
   std::optional<ByteCount> budget;   // nothing: see limits_for()
   std::uint64_t max_signatures = 0;  // 0: no such limit
   PayloadChoice payload;
-  std::vector<std::string> pinned;  // names of zones that stay
+  std::vector<std::string> pinned;  // names of zones that are never evicted
 };
 
-// How packs are read, and how fast loading is taken to be, for preloading and for simulated time.
+// How packs are read, and how fast loading is assumed to be, for preloading and simulated time.
 struct LoadingSettings {
   ReadMode read = kDefaultReadMode;
   std::uint64_t rate_limit = 0;      // bytes per second, 0: none
   double storage_rate = 50'000'000;  // stored bytes per second
   double decode_rate = 500'000'000;  // decoded bytes per second
 
-  // Stored bytes per second to reckon with.
+  // Stored bytes per second to assume.
   double expected_storage_rate() const noexcept {
     const auto limit = static_cast<double>(rate_limit);
     return rate_limit != 0 && limit < storage_rate ? limit : storage_rate;
@@ -54,16 +53,16 @@ struct LoadingSettings {
 
 struct CanSettings {
   std::string interface;  // empty: any
-  std::string dbc;        // as map.path; empty: not given
-  std::string dbc_text;   // of that file
-  // Those written out, those of CANopen's process data as NODE.INDEX, and those of the DBC file
+  std::string dbc;        // relative as map.path is; empty: not given
+  std::string dbc_text;   // the text of that file
+  // Those of can.signals, those of CANopen process data as NODE.INDEX, and those of the DBC file
   // that odometry names.
   std::map<std::string, CanSignal> signals;
   CanOpenWatchSettings canopen;
 };
 
-// Of wheels and, before the gear, their motors: turns a minute, electrical turns a minute, ticks of
-// an encoder. The last three and radians and turns count with the wheel's radius.
+// Units of wheels or, before the gear, of their motors. rpm: turns a minute; erpm: electrical turns
+// a minute; ticks: of an encoder. All but metres depend on the wheel's radius.
 enum class WheelUnit : std::uint8_t { kMetres, kRadians, kTurns, kRpm, kErpm, kTicks };
 
 // WheelOdometrySettings with its signals by name.
@@ -74,11 +73,11 @@ struct OdometrySettings {
   double pole_pairs = 1;                // of the motor, for erpm
   double ticks_per_turn = 0;            // of what turns the encoder, for ticks; 0: not given
   double scale = 1;                     // true over reported distance, from a calibration run
-  double scale_left = 1;                // beside scale, for the wheels of one side
+  double scale_left = 1;                // on top of scale, for the wheels of one side
   double scale_right = 1;
-  std::vector<std::string> invert;  // keys of signals that count the other way round
+  std::vector<std::string> invert;  // keys of signals that count backwards
   std::string left, right;          // names of signals: differential
-  std::string forward, yaw_rate;    // twist; forward is Ackermann's driven axle, too
+  std::string forward, yaw_rate;    // twist; forward is also Ackermann's driven axle
   std::string steering;             // Ackermann
   std::string front_left, front_right, rear_left, rear_right;  // mecanum
   std::vector<std::string> around;                             // omni, counter-clockwise
@@ -90,7 +89,7 @@ struct CycleSettings {
   std::uint32_t most_frames = 64;  // taken from the bus in one cycle
 };
 
-// How the threads of `zoned run` run.
+// Scheduling and memory locking of `zoned run`.
 struct RealtimeSettings {
   std::uint32_t priority = 80;         // SCHED_FIFO, control
   std::uint32_t loader_priority = 40;  // SCHED_FIFO, loader
@@ -105,7 +104,7 @@ struct RecorderSettings {
 
 // What survives a restart.
 struct StateSettings {
-  std::string folder;  // relative paths as of map.path; empty: $STATE_DIRECTORY, else nowhere
+  std::string folder;  // relative as map.path is; empty: $STATE_DIRECTORY, else nowhere
 };
 
 struct Settings {
@@ -126,18 +125,17 @@ struct Settings {
 };
 
 struct LoadedSettings {
-  Settings settings;  // meaningful without faults only
-  std::vector<std::string>
-      faults;        // all there are: "file:line: key: what is wrong; what is allowed"
-  std::string text;  // the file's
+  Settings settings;                // meaningful only without faults
+  std::vector<std::string> faults;  // all: "file:line: key: what is wrong; what is allowed"
+  std::string text;                 // the file's
   bool ok() const noexcept { return faults.empty(); }
 };
 
 // Reads a settings file, and the DBC file that it names. Never throws.
 LoadedSettings load_settings(const std::string& path);
 
-// The same for a text; `path` stands in messages, and map.path and can.dbc are relative to its
-// folder. dbc_text: instead of the file that can.dbc names.
+// The same for a text; messages name `path`, and map.path and can.dbc are relative to its folder.
+// dbc_text, unless empty, replaces the file that can.dbc names.
 LoadedSettings parse_settings(const std::string& text, const std::string& path,
                               const std::string& dbc_text = {});
 

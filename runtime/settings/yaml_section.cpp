@@ -14,7 +14,7 @@ std::string quoted(std::string_view text) {
   return std::string(1, '"').append(text.substr(0, 60)).append(1, '"');
 }
 
-// What stands there, for a message.
+// The node's content, for a message.
 std::string shown(const YAML::Node& node) {
   if (node.IsScalar()) return quoted(node.Scalar());
   if (node.IsSequence()) return "a list";
@@ -39,7 +39,7 @@ bool parse_integer(std::string_view text, std::uint64_t& value) {
 }
 
 template <typename Enum>
-std::string parse_word(const YAML::Node& node, Enum& value) {
+Outcome<void> parse_word(const YAML::Node& node, Enum& value) {
   std::string words;
   std::uint8_t number = 0;
   for (const char* word : EnumWords<Enum>::kWords) {
@@ -49,7 +49,7 @@ std::string parse_word(const YAML::Node& node, Enum& value) {
     }
     words += (number++ == 0 ? "" : ", ") + std::string(word);
   }
-  return shown(node) + " is not one of: " + words;
+  return failure(shown(node) + " is not one of: " + words);
 }
 
 constexpr std::uint32_t kFirstChoice = 1;  // kind 0, the core, is always loaded
@@ -127,128 +127,130 @@ void YamlSection::finish() {
   }
 }
 
-std::string YamlSection::parse(const YAML::Node& node, double least, double most, const char* unit,
-                               double& value) {
+Outcome<void> YamlSection::parse(const YAML::Node& node, double least, double most,
+                                 const char* unit, double& value) {
   double number = 0;
   if (!is_plain(node) || !parse_double(node.Scalar(), number)) {
-    return shown(node) + " is not a number; allowed: " + allowed_text(least, most, unit);
+    return failure(shown(node) + " is not a number; allowed: " + allowed_text(least, most, unit));
   }
   if (number < least || number > most) {
-    return node.Scalar() + " is out of range; allowed: " + allowed_text(least, most, unit);
+    return failure(node.Scalar() + " is out of range; allowed: " + allowed_text(least, most, unit));
   }
   value = number;
   return {};
 }
 
-std::string YamlSection::parse(const YAML::Node& node, double least, double most, const char* unit,
-                               std::uint64_t& value) {
+Outcome<void> YamlSection::parse(const YAML::Node& node, double least, double most,
+                                 const char* unit, std::uint64_t& value) {
   std::uint64_t number = 0;
   if (!is_plain(node) || !parse_integer(node.Scalar(), number)) {
     double real = 0;
     const bool low = is_plain(node) && parse_double(node.Scalar(), real) && real < least;
-    return shown(node) + (low ? " is out of range" : " is not a whole number") +
-           "; allowed: " + allowed_text(least, most, unit);
+    return failure(shown(node) + (low ? " is out of range" : " is not a whole number") +
+                   "; allowed: " + allowed_text(least, most, unit));
   }
   if (static_cast<double>(number) < least || static_cast<double>(number) > most) {
-    return node.Scalar() + " is out of range; allowed: " + allowed_text(least, most, unit);
+    return failure(node.Scalar() + " is out of range; allowed: " + allowed_text(least, most, unit));
   }
   value = number;
   return {};
 }
 
-std::string YamlSection::parse(const YAML::Node& node, double least, double most, const char* unit,
-                               std::uint32_t& value) {
+Outcome<void> YamlSection::parse(const YAML::Node& node, double least, double most,
+                                 const char* unit, std::uint32_t& value) {
   std::uint64_t wide = 0;
-  std::string wrong = parse(node, least, std::min(most, 4294967295.0), unit, wide);
-  if (wrong.empty()) value = static_cast<std::uint32_t>(wide);
-  return wrong;
+  const auto parsed = parse(node, least, std::min(most, 4294967295.0), unit, wide);
+  if (parsed) value = static_cast<std::uint32_t>(wide);
+  return parsed;
 }
 
-std::string YamlSection::parse(const YAML::Node& node, double, double, const char*, bool& value) {
+Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*, bool& value) {
   if (!is_plain(node) || (node.Scalar() != "true" && node.Scalar() != "false")) {
-    return shown(node) + " is not true or false";
+    return failure(shown(node) + " is not true or false");
   }
   value = node.Scalar() == "true";
   return {};
 }
 
-std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
-                               std::string& value) {
+Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                                 std::string& value) {
   if (node.IsNull()) {
     value.clear();
     return {};
   }
-  if (!node.IsScalar()) return shown(node) + " where a text is expected";
+  if (!node.IsScalar()) return failure(shown(node) + " where a text is expected");
   value = node.Scalar();
   return {};
 }
 
-std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
-                               std::vector<std::string>& value) {
-  if (!node.IsSequence() && !node.IsNull()) return shown(node) + " where a list [a, b] is expected";
+Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                                 std::vector<std::string>& value) {
+  if (!node.IsSequence() && !node.IsNull())
+    return failure(shown(node) + " where a list [a, b] is expected");
   value.clear();
   for (const YAML::Node& item : node) {
-    if (!item.IsScalar()) return shown(item) + " in a list of texts";
+    if (!item.IsScalar()) return failure(shown(item) + " in a list of texts");
     value.push_back(item.Scalar());
   }
   return {};
 }
 
-std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
-                               std::optional<ByteCount>& value) {
+Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                                 std::optional<ByteCount>& value) {
   const std::optional<ByteCount> size =
       node.IsScalar() ? parse_byte_count(node.Scalar()) : std::nullopt;
   if (!size || *size == 0) {
-    return shown(node) +
-           " is not a size; allowed: a whole number of bytes over 0, or with KiB, MiB or GiB "
-           "(24MiB)";
+    return failure(
+        shown(node) +
+        " is not a size; allowed: a whole number of bytes over 0, or with KiB, MiB or GiB "
+        "(24MiB)");
   }
   value = size;
   return {};
 }
 
-std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
-                               PayloadChoice& value) {
+Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                                 PayloadChoice& value) {
   const std::string allowed = "; allowed: a list of " + payload_words(kEveryPayload);
-  if (!node.IsSequence()) return shown(node) + " where a list is expected" + allowed;
+  if (!node.IsSequence()) return failure(shown(node) + " where a list is expected" + allowed);
   PayloadMask mask = kCoreOnly;
   for (const YAML::Node& item : node) {
     std::uint32_t kind = kFirstChoice;
     while (kind < kPayloadKinds && !(item.IsScalar() && item.Scalar() == kind_word(kind))) ++kind;
-    if (kind == kPayloadKinds) return shown(item) + " is not a payload" + allowed;
+    if (kind == kPayloadKinds) return failure(shown(item) + " is not a payload" + allowed);
     mask |= PayloadMask{1} << kind;
   }
   value.mask = mask;
   return {};
 }
 
-std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
-                               OdometryModel& value) {
+Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                                 OdometryModel& value) {
   return parse_word(node, value);
 }
-std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
-                               WheelUnit& value) {
+Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                                 WheelUnit& value) {
   return parse_word(node, value);
 }
-std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
-                               ByteOrder& value) {
+Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                                 ByteOrder& value) {
   return parse_word(node, value);
 }
-std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
-                               SignalType& value) {
+Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                                 SignalType& value) {
   return parse_word(node, value);
 }
-std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
-                               ReadMode& value) {
+Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                                 ReadMode& value) {
   return parse_word(node, value);
 }
 
-std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
-                               GpioBias& value) {
+Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                                 GpioBias& value) {
   return parse_word(node, value);
 }
-std::string YamlSection::parse(const YAML::Node& node, double, double, const char*,
-                               SafeLevel& value) {
+Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                                 SafeLevel& value) {
   return parse_word(node, value);
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "runtime/settings/field.hpp"
 
 namespace zonepack {
@@ -31,9 +32,8 @@ class FaultList {
   std::vector<std::string> faults_;
 };
 
-// A mapping of a YAML file, read strictly: what nobody asked for by finish() is a fault, and so is
-// a key that stands there twice. Works on any node; one that is not a mapping is a fault of its
-// own.
+// A mapping of a YAML file, read strictly: a key that was not asked for before finish() is a fault,
+// and so is a duplicate key. Works on any node; one that is not a mapping is itself a fault.
 class YamlSection {
  public:
   // path: "odometry", empty for the whole file.
@@ -42,13 +42,13 @@ class YamlSection {
   // The value of a key, or an undefined node. The key counts as known from here on.
   YAML::Node take(std::string_view key);
 
-  // Whether the key stands there, with any value. It does not count as known.
+  // Whether the key is present, with any value. Does not make it known.
   bool has(std::string_view key) const noexcept;
 
-  // The place of a key's value; the section's when it is not there.
+  // The place of a key's value; the section's when the key is absent.
   YAML::Mark mark_of(std::string_view key) const;
 
-  // Reads every field that is there into `into`; the others keep their values.
+  // Reads every field that is present into `into`; the others keep their values.
   template <typename Section>
   void read(const Fields<Section>& fields, Section& into) {
     for (const Field<Section>& field : fields) {
@@ -56,15 +56,14 @@ class YamlSection {
       if (!node.IsDefined()) continue;
       std::visit(
           [&](auto member) {
-            const std::string wrong =
-                parse(node, field.least, field.most, field.unit, into.*member);
-            if (!wrong.empty()) faults_.add(node.Mark(), path_of(field.key), wrong);
+            const auto parsed = parse(node, field.least, field.most, field.unit, into.*member);
+            if (!parsed) faults_.add(node.Mark(), path_of(field.key), parsed.error().message);
           },
           field.member);
     }
   }
 
-  // Names every key that was not asked for, with the nearest known one.
+  // Adds a fault for every key that was not asked for, with the nearest known one.
   void finish();
 
   // All keys with their values, for mappings whose keys are names.
@@ -76,24 +75,25 @@ class YamlSection {
   YAML::Mark mark() const { return mark_; }
 
  private:
-  // What is wrong with the value, empty when it was stored.
-  static std::string parse(const YAML::Node&, double least, double most, const char* unit, double&);
-  static std::string parse(const YAML::Node&, double, double, const char*, std::uint32_t&);
-  static std::string parse(const YAML::Node&, double, double, const char*, std::uint64_t&);
-  static std::string parse(const YAML::Node&, double, double, const char*, bool&);
-  static std::string parse(const YAML::Node&, double, double, const char*, std::string&);
-  static std::string parse(const YAML::Node&, double, double, const char*,
-                           std::vector<std::string>&);
-  static std::string parse(const YAML::Node&, double, double, const char*,
-                           std::optional<ByteCount>&);
-  static std::string parse(const YAML::Node&, double, double, const char*, PayloadChoice&);
-  static std::string parse(const YAML::Node&, double, double, const char*, OdometryModel&);
-  static std::string parse(const YAML::Node&, double, double, const char*, WheelUnit&);
-  static std::string parse(const YAML::Node&, double, double, const char*, ByteOrder&);
-  static std::string parse(const YAML::Node&, double, double, const char*, SignalType&);
-  static std::string parse(const YAML::Node&, double, double, const char*, ReadMode&);
-  static std::string parse(const YAML::Node&, double, double, const char*, GpioBias&);
-  static std::string parse(const YAML::Node&, double, double, const char*, SafeLevel&);
+  // Stores the value. A failure says what is wrong with it; the caller adds the place.
+  static Outcome<void> parse(const YAML::Node&, double least, double most, const char* unit,
+                             double&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*, std::uint32_t&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*, std::uint64_t&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*, bool&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*, std::string&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*,
+                             std::vector<std::string>&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*,
+                             std::optional<ByteCount>&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*, PayloadChoice&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*, OdometryModel&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*, WheelUnit&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*, ByteOrder&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*, SignalType&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*, ReadMode&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*, GpioBias&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*, SafeLevel&);
 
   std::string path_;
   FaultList& faults_;
@@ -107,7 +107,7 @@ class YamlSection {
 // "4", "0.413", "1e+12": the shortest text that reads back as the same number.
 std::string number_text(double value);
 
-// Words by which a field's allowed values are told: "0.01 to 20 m", "one of: little, big".
+// A field's allowed values in words: "0.01 to 20 m", "one of: little, big".
 std::string allowed_text(double least, double most, const char* unit);
 std::string payload_words(PayloadMask mask);
 

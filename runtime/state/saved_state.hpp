@@ -11,7 +11,7 @@
 
 namespace zonepack {
 
-// What a robot knows of itself when it starts again: where it was, on which map. A guess, not
+// What a robot knows about itself when it starts again: where it was, on which map. A guess, not
 // trust: it may have been carried.
 //
 // File: magic "\x89ZPS\r\n\x1A\n", u16 major 1, u16 minor 0, u32 size of the content, u64 XXH3 of
@@ -19,10 +19,10 @@ namespace zonepack {
 // i64 time, f64 x, y, yaw, f64 xx, xy, x_yaw, yy, y_yaw, yaw_yaw, u8 trusted, u8 length and name of
 // the zone. What follows is for later versions.
 //
-// Odometer counters are not in it: odometry works by differences, and what the robot did meanwhile
-// is what the guess's covariance stands for.
+// Odometer counters are not part of it: odometry works on differences, and the covariance of the
+// guess covers what the robot did meanwhile.
 struct SavedState {
-  std::uint64_t sequence = 0;  // counts the savings; the highest is the newest
+  std::uint64_t sequence = 0;  // counts the saves; the highest is the newest
   std::uint64_t runs = 0;      // counts the starts of zoned
   Digest16 map_lineage{};
   Digest32 map_version{};

@@ -13,19 +13,19 @@ namespace zonepack {
 namespace {
 
 constexpr std::int64_t kSaverTurn_ns = 50'000'000;
-constexpr std::size_t kStackBytes = 64 * 1024;
+constexpr std::size_t kStackBytes = std::size_t{64} * 1024;
 constexpr double kLessSure = 2;
 
 }  // namespace
 
 StateSaver::StateSaver(StateStore& store, SavedState like, std::function<StateGlimpse()> look,
                        std::function<bool(const StateGlimpse&, SavedState&)> place,
-                       std::function<void(std::string)> tell)
+                       std::function<void(std::string)> report)
     : store_(store),
       state_(std::move(like)),
       look_(std::move(look)),
       place_(std::move(place)),
-      tell_(std::move(tell)) {}
+      report_(std::move(report)) {}
 
 Result<void> StateSaver::start() {
   auto thread = Thread::start({.name = "zoned-state", .stack_bytes = kStackBytes}, true, [this] {
@@ -60,7 +60,7 @@ void StateSaver::watch() {
 }
 
 void StateSaver::save(const StateGlimpse& glimpse) {
-  if (!place_(glimpse, state_)) return;  // a newer glimpse will be there
+  if (!place_(glimpse, state_)) return;  // a newer glimpse will come
   tried_ = true;
   map_ = glimpse.map;
   zone_ = glimpse.zone;
@@ -72,15 +72,15 @@ void StateSaver::save(const StateGlimpse& glimpse) {
   const auto done = store_.save(state_);
   if (done) {
     ++saved_;
-    if (std::exchange(failing_, false)) tell_(store_.folder() + ": state is saved again");
+    if (std::exchange(failing_, false)) report_(store_.folder() + ": state is saved again");
     return;
   }
   ++failures_;
   if (std::exchange(failing_, true)) return;
-  tell_(store_.folder() +
-        ": state cannot be saved: " + std::strerror(static_cast<int>(done.error().detail)) +
-        "; after a restart the robot would not know where it is; make room there, or set "
-        "state.folder to a folder that can be written");
+  report_(store_.folder() +
+          ": state cannot be saved: " + std::strerror(static_cast<int>(done.error().detail)) +
+          "; after a restart the robot would not know where it is; make room there, or set "
+          "state.folder to a folder that can be written");
 }
 
 RestoredStart guess_from(const SavedState& state, const PoseFilterSettings& settings) {

@@ -12,17 +12,17 @@
 
 namespace zonepack {
 
-// What the saver looks at: as the control thread last told it.
+// What the saver looks at: the latest that the control thread published.
 struct StateGlimpse {
   std::int64_t now_ns = 0;  // the run's clock
   PoseEstimate pose;
-  std::uint32_t map = 1;  // number in the run of the map that the zone is of
+  std::uint32_t map = 1;  // number in the run of the map that the zone belongs to
   ZoneId zone = kNoZone;
 };
 
-// Saves the robot's state when its zone changes, when the run ends, and else every minute: flash
-// wears. A folder that cannot be written costs the state, never the run: it is counted, told once,
-// and tried again.
+// Saves the robot's state when its zone changes, when the run ends, and otherwise once a minute:
+// flash wears. A folder that cannot be written costs the state, never the run: it is counted,
+// reported once, and tried again.
 //
 // Threads: one that watches, its own unless watch() is called by hand; the control thread only
 // publishes.
@@ -31,11 +31,11 @@ class StateSaver {
   static constexpr std::int64_t kPeriod_ns = 60'000'000'000;
 
   // look: the newest glimpse. place: fills the map's version and the name of the zone; false when
-  // that map is gone. tell: takes complete messages. All must outlive
-  // this object. `like` gives the map's lineage and the number of runs.
+  // that map is gone. report: receives complete messages. All must outlive this object. `like`
+  // gives the map's lineage and the number of runs.
   StateSaver(StateStore& store, SavedState like, std::function<StateGlimpse()> look,
              std::function<bool(const StateGlimpse&, SavedState&)> place,
-             std::function<void(std::string)> tell);
+             std::function<void(std::string)> report);
   ~StateSaver() { end_thread(); }
 
   Result<void> start();
@@ -57,7 +57,7 @@ class StateSaver {
   SavedState state_;
   std::function<StateGlimpse()> look_;
   std::function<bool(const StateGlimpse&, SavedState&)> place_;
-  std::function<void(std::string)> tell_;
+  std::function<void(std::string)> report_;
   std::uint32_t map_ = 1;  // as saved, or tried to
   ZoneId zone_ = kNoZone;
   std::int64_t last_ns_ = 0;
@@ -68,8 +68,8 @@ class StateSaver {
   Thread thread_;
 };
 
-// How sure a restored pose is taken to be: no surer than a pose that was given, and less sure than
-// it was.
+// A restored pose and how certain it is assumed to be: no more than a given pose, and less than it
+// was.
 struct RestoredStart {
   Pose2 T_map_base;
   double sigma_m = 0, sigma_rad = 0;

@@ -10,8 +10,9 @@
 namespace zonepack {
 
 // Two files in a folder, state-0 and state-1, of which the older one is replaced each time, by
-// rename: power may fail at any moment, and if a file is lost or torn all the same, the one saved
-// before it is still there.   Threads: one at a time; not for the control thread.
+// rename: power may fail at any moment, and if a file is lost or torn anyway, the one saved before
+// it is still there.
+// Threads: one at a time; not for the control thread.
 class StateStore {
  public:
   explicit StateStore(std::string folder) : folder_(std::move(folder)) {}

@@ -20,11 +20,13 @@ using zonepack::allocation_watch::note;
 
 extern "C" {
 
+// NOLINTBEGIN(bugprone-reserved-identifier): names of glibc
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* block, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 void __libc_free(void* block);
+// NOLINTEND(bugprone-reserved-identifier)
 
 void* malloc(std::size_t size) noexcept {
   note();

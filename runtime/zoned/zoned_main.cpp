@@ -3,11 +3,14 @@
 // `calibrate` in runtime/calibrate.
 #include <CLI/CLI.hpp>
 
+#include "platform/version/version.hpp"
 #include "runtime/calibrate/calibrate_command.hpp"
 #include "runtime/live/can_source.hpp"
 #include "runtime/live/check_command.hpp"
 #include "runtime/live/run_command.hpp"
 #include "runtime/live/safe_outputs_command.hpp"
+#include "runtime/pack_format/file/pack_file.hpp"
+#include "runtime/recording/block.hpp"
 #include "runtime/replay/replay_command.hpp"
 #include "runtime/report/report.hpp"
 
@@ -132,7 +135,7 @@ void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
                "only say what would be refused, and what of this computer could be better");
   run.callback([&] {
     need("--config", arguments.config);
-    arguments.program = ZONEPACK_VERSION;
+    arguments.program = zonepack::version();
     exit_code = arguments.check ? zonepack::check_run(arguments) : zonepack::run_live(arguments);
   });
 }
@@ -152,12 +155,18 @@ void add_calibrate(CLI::App& app, zonepack::CalibrateArguments& arguments, int& 
 
 }  // namespace
 
+// An exception that comes here is a bug: it stops the process.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
   CLI::App app(
       "Keeps the rooms around a robot in memory, within a byte budget.\n"
       "Exit codes: 0 done, 1 the input or the world is bad, 2 usage.",
       "zoned");
-  app.set_version_flag("--version", ZONEPACK_VERSION);
+  app.set_version_flag(
+      "--version",
+      zonepack::version_line(
+          "zoned", {{"pack format", zonepack::kPackMajor, zonepack::kPackMinor},
+                    {"recording format", zonepack::kRecordingMajor, zonepack::kRecordingMinor}}));
   bool safe_outputs = false;
   std::string config;
   app.add_flag("--safe-outputs", safe_outputs,

@@ -13,11 +13,12 @@
 
 namespace zonepack {
 
-// Finds the boxes near a point among very many: a balanced tree of bounding boxes, split at the
+// Finds the boxes near a point among a great many: a balanced tree of bounding boxes, split at the
 // median of the longer side, so that its depth is log2 of the count however unevenly the boxes lie.
 //
 // Real-time: no allocation after construction; a visit costs O(log n) for each box it reports,
-// where boxes do not all overlap each other.   Threads: immutable.
+// unless most boxes overlap.
+// Threads: immutable.
 class BoxTree {
  public:
   BoxTree() = default;

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kNanosecond_s = 1e-9;
 
-// Portals may stand this far off the border that they join, and doors be a little wider than drawn.
+// A portal may lie this far off the borders that it joins, and a door may be a little wider than
+// drawn.
 constexpr double kPortalSlack_m = 0.1;
 
 constexpr double kLeastStep_m = 0.05;
@@ -25,7 +26,7 @@ Point2 moved(Point2 from, Point2 direction, double distance_m) noexcept {
   return {from.x_m + direction.x_m * distance_m, from.y_m + direction.y_m * distance_m};
 }
 
-// By a positive angle counter-clockwise, given its cosine and sine.
+// Rotated counter-clockwise by a positive angle, given its cosine and sine.
 Point2 turned(Point2 direction, Point2 rotation) noexcept {
   return {direction.x_m * rotation.x_m - direction.y_m * rotation.y_m,
           direction.x_m * rotation.y_m + direction.y_m * rotation.x_m};
@@ -128,7 +129,7 @@ void Preload::follow_path(const PoseEstimate& pose, ZoneId zone, double margin_m
     direction = {-direction.x_m, -direction.y_m};
   }
   Point2 at = moved({pose.T_map_base.x_m, pose.T_map_base.y_m}, direction, -kPortalSlack_m);
-  // Chords of an arc point half a step's turn ahead of its start.
+  // The chord of an arc points half a step's turn ahead of its start.
   direction = turned(direction, unit(turn_rad / 2));
   const Point2 rotation = unit(turn_rad);
   double done_m = -kPortalSlack_m;

@@ -17,15 +17,15 @@ struct Approach {
   ZoneId zone = kNoZone;
   bool ahead = false;        // its path leads there; else a portal is within three sigma
   double entry_s = 0;        // ahead: when it will be entered, from seen_ns on
-  std::int64_t seen_ns = 0;  // when that was last so
+  std::int64_t seen_ns = 0;  // when this was last true
 };
 
 struct PreloadSettings {
-  double margin_m = 0.3;           // beside three sigma: how far ahead a zone must be ready
+  double margin_m = 0.3;           // on top of three sigma: how far ahead a zone must be ready
   double motion_average_s = 0.15;  // over which speed and yaw rate are smoothed
   double standing_m_s = 0.02;      // slower than this is standing or turning in place
-  double hold_s = 0.3;             // an approach not seen for so long is given up
-  double most_turn_rad = 1.5;      // an arc is trusted so far; then the path goes on straight
+  double hold_s = 0.3;             // an approach not seen for this long is given up
+  double most_turn_rad = 1.5;      // an arc is followed this far; then the path goes straight on
   double most_reach_m = 20;        // and no path is followed farther
 };
 
@@ -35,18 +35,19 @@ struct PreloadSettings {
 //
 // where the path is the arc of the present speed and yaw rate, in whichever direction the robot
 // goes; and those whose portal is within three sigma, where the robot may be on the other side
-// already. So a door that is merely passed is not approached. While the robot stands or turns in
-// place nothing new is approached and nothing given up.
+// already. So driving past a door approaches nothing. While the robot stands or turns in place,
+// nothing is newly approached and nothing is given up.
 //
 // Real-time: no allocation; a cycle tests at most kMaxSteps + kMaxHops pieces of path against the
-// portals of one zone each (at most kMaxPortalsPerZone).   Threads: owned by the control thread.
+// portals of one zone each (at most kMaxPortalsPerZone).
+// Threads: owned by the control thread.
 class Preload {
  public:
   static constexpr std::size_t kMaxApproaches = 8;
   static constexpr int kMaxSteps = 32;
   static constexpr int kMaxHops = 3;
 
-  // load_s: for every zone the estimated seconds from wish to use; must outlive this object.
+  // load_s: for every zone the estimated seconds from request to use; must outlive this object.
   Preload(const ZoneGraph& graph, std::span<const float> load_s,
           const PreloadSettings& settings = {});
 

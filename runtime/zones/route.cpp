@@ -14,10 +14,10 @@
 namespace zonepack {
 namespace {
 
-// A portal passed out of a zone: the zone, and the place among its exits.
+// A portal passed when leaving a zone: the zone, and the index among its exits.
 using Passage = std::uint64_t;
 constexpr Passage kNoPassage = std::numeric_limits<Passage>::max();
-// By how much a portal may stand off its zones' borders at most.
+// How far a portal may lie off its zones' borders.
 constexpr double kOffBorder_m = 1;
 
 Passage passage_of(ZoneId zone, std::size_t exit) noexcept {

@@ -18,14 +18,15 @@ struct Route {
   double length_m = 0;        // from the start, or else the first door, to the last door
 };
 
-// Portals looked at before a plan is given up: what bounds its time, and its memory to about 1 MiB.
-inline constexpr std::size_t kMostRoutePortals = 16 * 1024;
+// Portals examined before planning gives up: bounds its time, and its memory to about 1 MiB.
+inline constexpr std::size_t kMostRoutePortals = std::size_t{16} * 1024;
 
-// The shortest way from zone to zone, straight from the middle of one portal to that of the next
-// (A*, with the distance to the goal's box as what is still to go). Needs no zone to be in memory.
-// From `start`, which lies in `from`; without it, leaving `from` costs nothing. The same result on
-// every machine: of two equal ways, the one through the lower ZoneIds. kNotFound: no way leads
-// there; kTooLarge: over kMostRoutePortals. Allocates; not for the control thread.
+// The shortest route between two zones, straight from the middle of one portal to the middle of the
+// next (A*, whose heuristic is the distance to the goal's box). No zone needs to be in memory.
+// Begins at `start`, which lies in `from`; without it, leaving `from` costs nothing. The same
+// result on every machine: of two equally long routes, the one through the lower ZoneIds.
+// kNotFound: there is no route; kTooLarge: over kMostRoutePortals. Allocates; not for the control
+// thread.
 Result<Route> plan_route(const ZoneGraph& graph, ZoneId from, ZoneId to,
                          std::optional<Point2> start = std::nullopt);
 

@@ -8,7 +8,7 @@
 namespace zonepack {
 namespace {
 
-// Portal ends may stand a little off the borders that they join.
+// Portal ends may lie a little off the borders that they join.
 constexpr double kPortalOffBorder_m = 0.2;
 
 }  // namespace

@@ -9,11 +9,11 @@ namespace zonepack {
 
 struct TrackerSettings {
   // How deep the pose must be in another zone before it counts, so that noise on a border does not
-  // switch to and fro: one sigma within these limits, where a portal leads from the zone the robot
-  // was in ...
+  // switch back and forth: one sigma within these limits, where a portal leads from the zone the
+  // robot was in ...
   double least_depth_m = 0.05;
   double most_depth_m = 0.15;
-  // ... and where no portal leads, this plus three sigma: one does not drive through walls.
+  // ... and where no portal leads, this plus three sigma: robots do not drive through walls.
   double wall_depth_m = 0.3;
   // A pose outside of every zone starts in the nearest one within this plus three sigma.
   double start_radius_m = 1.0;
@@ -22,13 +22,13 @@ struct TrackerSettings {
 // The zone the robot is in, from its pose, with hysteresis.
 //
 // Real-time: no allocation; a cycle looks at the current zone's border, once at the zone graph and
-// at the portals of one zone.   Threads: owned by the control thread.
+// at the portals of one zone.
+// Threads: owned by the control thread.
 class ZoneTracker {
  public:
   explicit ZoneTracker(const ZoneGraph& graph, const TrackerSettings& settings = {});
 
-  // Takes the pose of this cycle; an invalid one changes nothing. True when the zone is another
-  // now.
+  // Takes the pose of this cycle; an invalid one changes nothing. True when the zone changed.
   bool update(const PoseEstimate& pose) noexcept;
 
   // Forgets where the robot was: the next pose decides alone, as after re-initialisation.
@@ -37,9 +37,9 @@ class ZoneTracker {
     confirmed_from_ = kNoZone;
   }
 
-  // Somebody saw the robot pass into `zone`, from the zone it was in: believed against a pose that
-  // lags behind, until the pose is inside too, or more than reach_m plus three sigma from the
-  // portals between the two.
+  // The robot was seen passing into `zone` from the zone it was in: believed over a pose that lags
+  // behind, until the pose is inside too, or more than reach_m plus three sigma from the portals
+  // between the two.
   void confirm(ZoneId zone, double reach_m) noexcept;
 
   // kNoZone before the first valid pose in or near a zone.

@@ -8,7 +8,7 @@
 namespace zonepack {
 namespace {
 
-// From the middle of a portal this far into both zones: past the snap distance of its ends.
+// Probes lie this far from a portal's middle in both zones: past the snap distance of its ends.
 constexpr double kProbe_m = 0.25;
 
 Point2 along(Point2 from, Point2 direction, double distance_m) noexcept {

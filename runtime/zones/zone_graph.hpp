@@ -34,10 +34,11 @@ struct Exit {
 
 // Where zones are and where one can pass between them. Metres in the map frame.
 //
-// Zones come sorted by name, so the lowest ZoneId is the first by name. A zone and a portal keep
+// Zones come sorted by name, so the lowest ZoneId is the first by name. Zones and portals respect
 // the limits of the format (kMaxVerticesPerZone, kMaxPortalsPerZone), which bound every call here.
-// Real-time: no allocation after construction; every call costs O(log zones) beside the vertices of
-// the zones around the point.   Threads: immutable.
+// Real-time: no allocation after construction; every call costs O(log zones) plus the vertices of
+// the zones around the point.
+// Threads: immutable.
 class ZoneGraph {
  public:
   ZoneGraph(std::vector<GraphZone> zones, std::span<const GraphPortal> portals);
@@ -49,8 +50,8 @@ class ZoneGraph {
   // The portals of a zone, in the order in which they were given.
   std::span<const Exit> exits(ZoneId zone) const noexcept;
 
-  // The zone that holds the point, as the packer assigns signatures: inside goes before border,
-  // then the lowest ZoneId; kNoZone outside of all.
+  // The zone that holds the point, as the packer assigns signatures: inside takes precedence over
+  // on the border, then the lowest ZoneId; kNoZone outside of all.
   ZoneId zone_at(Point2 point) const noexcept;
 
   // zone_at, or else the nearest zone within `radius_m`.
@@ -59,7 +60,7 @@ class ZoneGraph {
   // How far inside the zone the point lies: metres to its border, negative outside.
   double depth_m(ZoneId zone, Point2 point) const noexcept;
 
-  // What the graph takes from the budget: all that it allocated.
+  // What the graph takes from the budget: everything it allocated.
   ByteCount memory_bytes() const noexcept;
 
  private:

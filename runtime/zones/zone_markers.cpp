@@ -74,21 +74,21 @@ MarkerVerdict ZoneMarkers::pass(std::size_t marker, const PoseEstimate& pose,
   return {.refused = "standing"};
 }
 
-std::optional<std::string> ZoneMarkers::fault_of(const ZoneGraph& graph,
-                                                 std::span<const ZoneMarkerSettings> markers) {
+Outcome<void> ZoneMarkers::check(const ZoneGraph& graph,
+                                 std::span<const ZoneMarkerSettings> markers) {
   for (const ZoneMarkerSettings& marker : markers) {
     const std::string key = "gpio.zone_markers." + marker.name + ".zones: ";
     const ZoneId zone = zone_named(graph, marker.zone);
     const ZoneId other = zone_named(graph, marker.other);
-    if (zone == kNoZone) return key + "the map has no zone " + marker.zone;
+    if (zone == kNoZone) return failure(key + "the map has no zone " + marker.zone);
     if (marker.other.empty()) continue;
-    if (other == kNoZone) return key + "the map has no zone " + marker.other;
+    if (other == kNoZone) return failure(key + "the map has no zone " + marker.other);
     if (!leads_to(graph, zone, other)) {
-      return key + "no portal leads from " + marker.zone + " to " + marker.other +
-             "; name two zones that one drives between, or one zone alone";
+      return failure(key + "no portal leads from " + marker.zone + " to " + marker.other +
+                     "; name two zones that one drives between, or one zone alone");
     }
   }
-  return std::nullopt;
+  return {};
 }
 
 }  // namespace zonepack

@@ -12,7 +12,7 @@
 #include "runtime/map/catalog.hpp"
 #include "runtime/memory/arena.hpp"
 
-// What benchmarks of loading begin with.
+// What the benchmarks of loading share.
 namespace zonepack::bench {
 
 [[noreturn]] inline void fail(const std::string& what) { throw std::runtime_error(what); }

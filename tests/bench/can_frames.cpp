@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // usage: can_frames [INTERFACE]: what taking frames costs a control thread that runs at 1 kHz on
-// one processor: receive() and odometry, for so many frames a cycle. Prints time per cycle and per
-// frame, and the most frames per second whose cycles end within their millisecond (99 of 100)
-// without loss. Without INTERFACE from the simulated bus. With it, which must be a vcan that is up,
-// from the kernel, with stamps and filters as zoned sets them, beside `candump -L INTERFACE
-// >/dev/null`, by processor time of its process for the same frames.
+// one processor: receive() and odometry, for a number of frames per cycle. Prints time per cycle
+// and per frame, and the most frames per second whose cycles end within their millisecond (99 of
+// 100) without loss. Without INTERFACE from the simulated bus. With it, which must be a vcan that
+// is up, from the kernel, with stamps and filters as zoned sets them, next to `candump -L INTERFACE
+// >/dev/null`, measured by its processor time for the same frames.
 #include <fcntl.h>
 #include <linux/can.h>
 #include <linux/can/raw.h>

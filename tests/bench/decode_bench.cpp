@@ -3,9 +3,9 @@
 // LZ4, every check) against the same work written plainly (pread in pieces of the same length,
 // XXH3, LZ4_decompress_safe), against LZ4_decompress_safe alone, over the same chunks into the same
 // slots, and against memcpy of what is decoded. They take turns on every zone; time is the thread's
-// own, so that other programs do not count. Opening a pack and reading its index is told apart;
-// both readers begin with a pack just opened, because the first bytes read through a new file cost
-// more than the next.
+// own, so that other programs do not count. Opening a pack and reading its index is reported
+// separately; both readers begin with a pack just opened, because the first bytes read through a
+// new file cost more than the next.
 //
 //   decode_bench MAP [ROUNDS [DECODED]]: all zones' decoded bytes are written to the file DECODED
 #include <lz4.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Evicts one zone of SLOTS slots among ZONES known ones, LEASES others of which readers hold, COUNT
-// times, inside measured(): for counting its instructions, which must not depend on any of these.
-// Prints the nanoseconds of one.
+// Evicts one zone of SLOTS slots COUNT times, among ZONES known zones and LEASES others that
+// readers hold, inside measured(): for counting its instructions, which must not depend on any of
+// these. Prints the nanoseconds of one eviction.
 //
 //   valgrind --tool=callgrind --toggle-collect='measured(*)' eviction_steps SLOTS ZONES LEASES
 //   COUNT

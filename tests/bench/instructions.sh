@@ -25,7 +25,7 @@ budget=$("$bin/zonepack" plan "$work/map" --json - 2>/dev/null | jq .smallest_bu
 zoned=$!
 "$bin/map_readers" "$ZONED_SOCKET" 2 >"$work/readers.txt" 2>&1 &
 while kill -0 $zoned 2>/dev/null; do
-  for command in "pin R11" "unpin R11"; do "$bin/zonectl" $command >/dev/null 2>&1 || true; done
+  for command in pin unpin; do "$bin/zonectl" "$command" R11 >/dev/null 2>&1 || true; done
   sleep 0.05
 done
 wait $zoned || fail "$(cat "$work/out.txt")"
@@ -37,6 +37,7 @@ operations='WheelOdometry::take PoseFilter::predict PoseFilter::correct PoseFilt
 # A line a cycle: instructions, then calls and instructions of every operation.
 count() {  # OUT INPUTS
   # A dump when a cycle is over. The dumps abbreviate names: "(7) name", from then on "(7)".
+  # shellcheck disable=SC2086  # no argument where no number is wanted
   valgrind --tool=callgrind --callgrind-out-file="$work/dumps" --combine-dumps=yes --collect-atstart=no \
     --toggle-collect='measured(*)' --dump-after='zonepack::Cycle::run(zonepack::CycleInput const&)' \
     "$bin/recorded_cycles" "$work/run.zpr" $cycles_wanted >"$2" 2>"$work/log" || fail "$(cat "$work/log")"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drives a recording's inputs through the cycle in one thread, each run of it inside measured(),
 // for counting its instructions (instructions.sh). Prints what each cycle was given: its number,
-// frames, corrections, loads and commands, and how many events it told.
+// frames, corrections, loads and commands, and how many events it produced.
 //
 //   recorded_cycles RECORDING [CYCLES]
 #include <cstdio>
@@ -40,7 +40,7 @@ int fail(const std::string& what) {
 
 }  // namespace
 
-// Its result, so that the call is no jump that never comes back.
+// Returns a result, so that the call does not become a tail jump that never returns.
 [[gnu::noinline]] std::uint64_t measured(Cycle& cycle, const CycleInput& input) {
   return cycle.run(input).cycles;
 }
@@ -48,14 +48,14 @@ int fail(const std::string& what) {
 int main(int argc, char** argv) {
   if (argc < 2) return std::fprintf(stderr, "usage: recorded_cycles RECORDING [CYCLES]\n"), 2;
   const std::uint64_t wanted = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : UINT64_MAX;
-  std::string fault;
-  auto recording = RecordingReader::open(argv[1], fault);
-  if (!recording) return fail(fault);
+  auto recording = RecordingReader::open(argv[1]);
+  if (!recording) return fail(recording.error().message);
   if (recording->checkpoint()) return fail("the recording does not begin with cycle 0");
-  const auto run = open_recorded_run(recording->preface(), fault);
-  if (!run) return fail(fault);
-  const auto map = MapModel::make(run->catalog, recording->preface().terms, fault);
-  if (!map) return fail(fault);
+  const auto run = open_recorded_run(recording->preface());
+  if (!run) return fail(run.error().message);
+  const auto made = MapModel::make(run->catalog, recording->preface().terms);
+  if (!made) return fail(made.error().message);
+  const MapModel* const map = made->get();
 
   const auto zones = static_cast<std::uint32_t>(map->needs.size());
   auto memory = SharedMemory::create("recorded", shared_map_bytes(zones, map->slots));
@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
   Residency residency(zones, map->limits);
   RecordedLoader loader(run->catalog);
   QueuedEvents events;
-  if (!map->pin(residency, fault)) return fail(fault);
+  if (const auto pinned = map->pin(residency); !pinned) return fail(pinned.error().message);
   Cycle cycle(cycle_config(run->settings), {map->graph, map->needs, map->load_s, map->pinned,
                                             residency, loader, events, &*shared});
   if (const auto& start = recording->preface().start) {

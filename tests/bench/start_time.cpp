@@ -2,7 +2,7 @@
 // From the start of the process to the first zone that another program can read, warm.
 //
 //   start_time ROUNDS SOCKET COMMAND...: COMMAND starts a zoned that serves at SOCKET
-// Tells whether the target of 50 ms is met; exits with 1 when the middle is over a quarter of a
+// Reports whether the target of 50 ms is met; exits with 1 when the median is over a quarter of a
 // second.
 #include <fcntl.h>
 #include <signal.h>

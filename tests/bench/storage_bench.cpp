@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ways of reading packs (ReadMode), cold and warm, beside what dd does: pread in pieces of 64
-// KiB, the kernel reading ahead as it likes. "read" brings all chunks of the payload in windows of
-// 64 KiB, "load" decodes them into slots (ZoneLoad). The ways take turns on every zone; before each
-// cold one the pack's pages are dropped. Closing a pack, and so dropping its pages, counts. MB/s of
-// stored bytes, in wall time; CPU is the thread's. Page cache: the most that mincore saw after any
-// step, and what was left of all packs at the end; as root also the most that a memory cgroup of
-// our own was charged for files.
+// The ways of reading packs (ReadMode), cold and warm, compared with what dd does: pread in pieces
+// of 64 KiB, the kernel reading ahead as it likes. "read" brings all chunks of the payload in
+// windows of 64 KiB, "load" decodes them into slots (ZoneLoad). The ways take turns on every zone;
+// before each cold one the pack's pages are dropped. Closing a pack, and so dropping its pages,
+// counts. MB/s of stored bytes, in wall time; CPU is the thread's. Page cache: the most that
+// mincore saw after any step, and what was left of all packs at the end; as root also the most that
+// a memory cgroup of our own was charged for files.
 //
 //   storage_bench MAP [ROUNDS]
 #include <fcntl.h>

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // From the decision to load a zone to its first usable signature, cold: a request to the robot's
-// loader thread until its answer is there to be published, beside reading the zone's stored bytes
-// as dd does (pread in pieces of 64 KiB, the kernel reading ahead as it likes). Multiples are of
-// the zone's own dd in the middle of all rounds; dd's own multiples tell what this storage varies
-// by. Both are timed in a thread with the control thread's priority, where there is the privilege;
-// that thread takes an answer with its next cycle, at most one period later. Before each, the
-// pack's pages are dropped.
+// loader thread until its answer is ready to be published, compared with reading the zone's stored
+// bytes as dd does (pread in pieces of 64 KiB, the kernel reading ahead as it likes). Multiples are
+// of the zone's own dd, median of all rounds; dd's own multiples show how much this storage varies.
+// Both are timed in a thread with the control thread's priority, where there is the privilege; that
+// thread takes an answer with its next cycle, at most one period later. Before each, the pack's
+// pages are dropped.
 //
 //   zone_latency MAP ROUNDS
-// Tells whether the target of 1.5 at p99 is met, of dd's own p99 and of its middle; exits with 1
-// when the middle is over it.
+// Reports whether the target of 1.5 at p99 is met, relative to dd's own p99 and to its median;
+// exits with 1 when the median is over it.
 #include <fcntl.h>
 #include <unistd.h>
 

@@ -24,7 +24,7 @@ struct Chunk {
   Bytes bytes;
 };
 
-// A chunk where the loader has it: at a multiple of 64, with foreign bytes behind it.
+// A chunk where the loader has it: at a multiple of 64, with foreign bytes after it.
 class Judge {
  public:
   // Whether check_chunk() accepts; fails the test where the reference says otherwise.
@@ -134,8 +134,8 @@ TEST(ChunkCheck, JudgesEveryLengthOfACoreChunkAsTheVerifierDoes) {
   EXPECT_GT(judge.refused(), 1000u);
 }
 
-// Every 16-bit place holds numbers of vtables: fields that stand elsewhere, behind the end,
-// astride.
+// Every 16-bit place holds numbers of vtables: fields that lie elsewhere, past the end, or across
+// it.
 TEST(ChunkCheck, JudgesEveryMovedFieldOfACoreChunkAsTheVerifierDoes) {
   static constexpr std::uint16_t kPlaces[] = {0,  1,  2,  4,  5,   6,      8,
                                               12, 30, 32, 34, 100, 0x3FFC, 0xFFFE};
@@ -153,7 +153,7 @@ TEST(ChunkCheck, JudgesEveryMovedFieldOfACoreChunkAsTheVerifierDoes) {
   EXPECT_GT(judge.refused(), 1000u);
 }
 
-// The chunk with its second signature replaced by a copy of the first's table behind the chunk,
+// The chunk with its second signature replaced by a copy of the first's table after the chunk,
 // `padding` bytes after a multiple of 8; both use one vtable.
 Bytes with_twin(Bytes bytes, std::size_t padding) {
   const fb::CoreChunk& chunk = *fb::GetCoreChunk(bytes.data());
@@ -188,8 +188,7 @@ TEST(ChunkCheck, ChecksEveryTableOfAVtableThatItKnows) {
   const fb::Signature& first = *fb::GetCoreChunk(chunk.bytes.data())->signatures()->Get(0);
   const bool begins_at_8 =
       (reinterpret_cast<const std::byte*>(&first) - chunk.bytes.data()) % 8 == 0;
-  const std::size_t aligned =
-      begins_at_8 ? 0 : 4;  // the stamp stands where that makes it a multiple
+  const std::size_t aligned = begins_at_8 ? 0 : 4;  // the stamp lies where that makes it a multiple
   Judge judge;
   for (std::size_t padding = 0; padding < 16; ++padding) {
     Bytes bytes = with_twin(chunk.bytes, padding);

@@ -22,7 +22,7 @@
 namespace zonepack::fuzz {
 namespace {
 
-// Bytes at an address that is a multiple of 64, with nothing readable behind them.
+// Bytes at an address that is a multiple of 64, with nothing readable after them.
 class Aligned {
  public:
   explicit Aligned(std::size_t size)
@@ -152,7 +152,7 @@ bool read_index(ByteSpan bytes) {
   Aligned index(bytes);
   const PackHeader header;
   PackTail tail;
-  // Where the chunks end is the index's to say.
+  // The index says where the chunks end.
   tail.index_offset = sizeof header;
   flatbuffers::Verifier verifier(reinterpret_cast<const std::uint8_t*>(index.data()), bytes.size());
   if (verifier.VerifyBuffer<fb::PackIndex>() &&
@@ -238,11 +238,10 @@ bool read_dbc(ByteSpan bytes) {
     frame.id = message.id;
     frame.extended = message.extended;
     for (const DbcSignal& signal : message.signals) {
-      std::string fault;
-      const auto found = loaded.file.find(message.name + "." + signal.name, fault);
+      const auto found = loaded.file.find(message.name + "." + signal.name);
       if (found) {
         sink = static_cast<std::uint64_t>(read_signal(found->signal, frame).raw);
-      } else if (fault.empty()) {
+      } else if (found.error().message.empty()) {
         std::abort();
       }
     }

@@ -17,9 +17,9 @@ for components in "" packer; do
   [ "$got" = "C1 9" ] || { echo "expected 'C1 9' from the consumer, got '$got'"; exit 1; }
 done
 
-# The README's program needs the client only, and is what the README shows.
-diff <(sed -n '/^```cpp$/,/^```$/p' "$source/README.md" | grep -v '^```') \
-  <(tail -n +2 "$source/tests/system/consumer/client/read_map.cpp") || { echo "README shows another program"; exit 1; }
+# The program of runtime/README.md needs the client only, and is what that page shows.
+diff <(sed -n '/^```cpp$/,/^```$/p' "$source/runtime/README.md" | grep -v '^```') \
+  <(tail -n +2 "$source/tests/system/consumer/client/read_map.cpp") || { echo "runtime/README.md shows another program"; exit 1; }
 cmake -S "$source/tests/system/consumer/client" -B "$work/client" -DCMAKE_BUILD_TYPE=Debug \
   -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON >"$work/configure.log" 2>&1 ||
   { cat "$work/configure.log"; exit 1; }

@@ -24,6 +24,7 @@ to_json() {
 # Adds the frame around an LZ4 block that the lz4 program wants: blocks of up to 64 KiB, no checksums.
 unlz4() {
   { printf '\x04\x22\x4d\x18\x60\x40\x82'
+    # shellcheck disable=SC2059  # the inner printf writes the escapes that the outer one prints as bytes
     printf "$(printf '\\x%02x\\x%02x\\x%02x\\x%02x' $(($2 & 255)) $(($2 >> 8 & 255)) 0 0)"
     cat "$1"
     printf '\0\0\0\0'; } | lz4 -d -c -q
@@ -91,6 +92,7 @@ done
 ((blocks >= 2)) || fail "only $blocks of $chunks chunks were LZ4 blocks"
 
 # ---- what the chunks hold, against the text beside the map ----
+# shellcheck disable=SC2046  # a file each chunk
 ids=$(jq -s -c '[.[].signatures[] | select(.continued | not) | .id]' \
   $(jq -r '.chunks | to_entries[] | select(.value.kind == "Core") | .key' "$work/index-0.json" |
     sed "s|.*|$work/chunk-0-&.json|"))

@@ -87,7 +87,7 @@ if [ ! -e /sys/class/net/nocan7 ]; then
 fi
 
 # Others look on and have their say while it runs; SIGTERM ends it in order, with its results.
-how=exec live map 1 --json stopped.json --events stopped.jsonl >out.txt 2>&1 &
+how="exec" live map 1 --json stopped.json --events stopped.jsonl >out.txt 2>&1 &
 pid=$!
 for _ in $(seq 200); do
   "$bin/zonectl" status >/dev/null 2>&1 && break

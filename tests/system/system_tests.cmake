@@ -2,7 +2,7 @@
 # Tests of whole programs and of the repository itself.
 
 add_test(NAME system/include_arrows
-         COMMAND ${CMAKE_CURRENT_LIST_DIR}/include_arrows_test.sh ${PROJECT_SOURCE_DIR})
+         COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/include_arrows_test.py ${PROJECT_SOURCE_DIR})
 if(TARGET zonepack AND TARGET zoned)
   add_test(NAME system/run
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/run_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
@@ -26,8 +26,18 @@ if(TARGET zonepack AND TARGET zoned)
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/report_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
 endif()
+if(TARGET zonepack AND TARGET zoned AND TARGET zonectl)
+  add_test(NAME system/documents
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/documents_test.py ${PROJECT_SOURCE_DIR}
+                   ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
+endif()
 add_test(NAME system/packages_listed
          COMMAND ${CMAKE_CURRENT_LIST_DIR}/packages_listed_test.sh ${PROJECT_SOURCE_DIR})
+if(TARGET zonepack AND TARGET zoned AND TARGET zonectl)
+  add_test(NAME system/version
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/version_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR} ${PROJECT_VERSION})
+endif()
 if(TARGET zonepack)
   add_test(NAME system/install_and_find_package
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/install_test.sh ${PROJECT_BINARY_DIR}

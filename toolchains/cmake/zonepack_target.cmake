@@ -28,7 +28,6 @@ function(zonepack_program name dir)
   zonepack_sources_of(sources ${dir})
   add_executable(${name} ${sources})
   zonepack_settings(${name})
-  target_compile_definitions(${name} PRIVATE ZONEPACK_VERSION="${PROJECT_VERSION}")
 endfunction()
 
 # The same flags everywhere, so that code which decides gives the same bits on every compiler.

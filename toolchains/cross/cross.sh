@@ -13,29 +13,8 @@ do_cross() {  # ARCH
   use_arch "$1" || exit 2
   ready
   cross_build "$arch"
-  stage "tests: $arch units under qemu-user"
-  ctest --preset "$arch" -j "$(nproc)"
-  make_packages
-}
-
-# The part of `toolchains/run test`: the robot's programs, units that compute, one boot of the virtual robot, and
-# armhf's zoned for the comparison of decisions. All packages and units are left to `cross`, all boots to `system`.
-test_cross() {
-  local units=(pack_format zones odometry)
-  cross_build arm64 zoned zonectl "${device_programs[@]}" "${units[@]/#/test_}"
-  stage "tests: arm64 units of the robot under qemu-user"
-  ctest --preset arm64 -j "$(nproc)" -R "^($(IFS='|' && echo "${units[*]}"))/"
-  make_packages runtime
-  set_flavour arm64
-  make_guest
-  stage "system tests: on the virtual robot, arm64"
-  local there=(drive_test bus_faults_test check_test)
-  run_guest_tests "${there[@]}"
-  stage "not run: $(guest_tests | grep -vxF "$(printf '%s\n' "${there[@]}")" | tr '\n' ' ')of the virtual robot, armhf and" \
-    "PREEMPT_RT: toolchains/run system arm64, armhf, rt-arm64"
-  cross_build armhf zoned
-  set_flavour arm64
-  replay_recordings arm64 armhf
+  ctest_of "$arch" "$arch units under qemu-user"
+    make_packages
 }
 
 make_packages() {  # [runtime]: of $arch, built

@@ -7,6 +7,7 @@
 
 roots=$(realpath -m "${ZONEPACK_SYSROOTS:-build}")
 
+# shellcheck disable=SC2034  # for those who source this
 use_arch() {  # ARCH: sets arch, triplet, kernel_arch, sysroot, emulator, apt_dir
   arch=$1
   case $arch in

@@ -3,7 +3,7 @@
 # The virtual robot's first process: mounts, modules, then /payload/start, whose status the host reads from the
 # console. /bin/sh is dash: busybox's shell would run its own small "ip" whatever PATH says.
 /bin/busybox --install -s /bin 2>/dev/null
-export PATH=/bin HOME=/tmp TERM=${TERM:-vt100}
+export PATH=/bin HOME=/tmp TERM="${TERM:-vt100}"
 mount -t proc proc /proc
 mount -t sysfs sysfs /sys
 mount -t devtmpfs dev /dev 2>/dev/null

@@ -24,7 +24,7 @@ make_guest() {
   cp -r tests/data/scenario1_loop "$payload/data/"
   mkdir "$payload/bin"
   cp "${device_programs[@]/#/build/$arch/bin/}" "$payload/bin/"
-  local host=build/ci/bin
+  local host=build/test/bin
   build_map() {  # FOLDER PAYLOAD
     "$host/zonepack" build --db tests/data/hospital-small.db --zones tests/data/zones.geojson --out "$payload/$1" \
       --payload "$2" >/dev/null 2>&1
@@ -86,7 +86,7 @@ run_guest_tests() {  # [TEST...], all by default
 prepare_robot() {  # arm64|armhf|rt-arm64
   set_flavour "$1" || exit 2
   ready
-  build ci --target zonepack zoned
+  build test --target zonepack zoned
   cross_build "$arch" zoned zonectl "${device_programs[@]}"
   toolchains/cross/packages.sh "$arch" runtime
   make_guest
@@ -101,7 +101,7 @@ do_system() {  # [arm64|armhf|rt-arm64 [TEST...]]
 
 # What was recorded on the robot, replayed by the host's zoned and, under qemu-user, by those of ARCH.
 replay_recordings() {  # ARCH...
-  local -a zoneds=(build/ci/bin/zoned)
+  local -a zoneds=(build/test/bin/zoned)
   local other
   for other in "$@"; do zoneds+=("$(emulated "$other" zoned)"); done
   stage "recordings: made on the virtual robot, replayed by ${zoneds[*]}, with and without FMA"

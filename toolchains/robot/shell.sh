@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The virtual robot for a person: the sample drive on vcan0 and through zoned, again and again, and a shell.
 # `exit` switches it off.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 set +eu
 cd /tmp || exit

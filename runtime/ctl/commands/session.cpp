@@ -5,55 +5,52 @@
 #include <cstring>
 
 namespace zonepack {
+namespace {
 
-CtlSession::CtlSession(const std::string& socket) : socket_(socket) {
-  Result<Connection> connection = Connection::open(socket, "zonectl");
-  if (connection) {
-    connection_.emplace(std::move(connection).value());
-  } else {
-    tell(connection.error());
-  }
-}
-
-bool CtlSession::listen(int timeout_ms) {
-  const auto heard = connection_->listen(timeout_ms);
-  if (!heard) tell(heard.error());
-  return heard.ok();
-}
-
-void CtlSession::tell(const Error& error) const {
-  std::cerr << "zonectl: " << socket_ << ": ";
+std::string advice(const Error& error) {
   switch (error.code) {
     case ErrorCode::kNotFound:
-      std::cerr << "no zoned listens there; start zoned run, or name its socket by --socket, "
-                   "ZONED_SOCKET or --config";
-      break;
+      return "no zoned listens there; start zoned run, or name its socket by --socket, "
+             "ZONED_SOCKET or --config";
     case ErrorCode::kBusy:
-      std::cerr << "zoned does not answer, or has too many clients; try again";
-      break;
+      return "zoned does not answer, or has too many clients; try again";
     case ErrorCode::kCancelled:
-      std::cerr << "zoned has closed the connection";
-      break;
+      return "zoned has closed the connection";
     case ErrorCode::kBadVersion:
-      std::cerr << "zoned speaks another version of the protocol; use the zonectl that came with "
-                   "it";
-      break;
+      return "zoned speaks another version of the protocol; use the zonectl that came with it";
     case ErrorCode::kIo:
-      std::cerr << std::strerror(static_cast<int>(error.detail));
-      if (error.detail == EACCES) {
-        std::cerr << "; the mode and group of the socket decide who may (serve.mode)";
-      }
-      break;
+      return std::strerror(static_cast<int>(error.detail)) +
+             std::string(error.detail == EACCES ? "; the mode and group of the socket decide who "
+                                                  "may (serve.mode)"
+                                                : "");
     default:
-      std::cerr << "not understood: " << to_string(error.code);
+      return std::string("not understood: ") + to_string(error.code);
   }
-  std::cerr << '\n';
 }
 
-void CtlSession::tell(const wire::Reply& refusal) {
-  std::cerr << "zonectl: " << to_string(refusal.fault());
-  if (refusal.text() != nullptr) std::cerr << ": " << refusal.text()->str();
-  std::cerr << '\n';
+}  // namespace
+
+Outcome<CtlSession> CtlSession::open(const std::string& socket) {
+  Result<Connection> connection = Connection::open(socket, "zonectl");
+  if (!connection) return explain(socket, connection.error());
+  return CtlSession(socket, std::move(connection).value());
+}
+
+Outcome<void> CtlSession::listen(int timeout_ms) {
+  if (const auto heard = connection_.listen(timeout_ms); !heard) {
+    return explain(socket_, heard.error());
+  }
+  return {};
+}
+
+Failure CtlSession::explain(const std::string& socket, const Error& error) {
+  return failure(socket + ": " + advice(error), error.code);
+}
+
+Failure CtlSession::refusal(const wire::Reply& reply) {
+  std::string message = to_string(reply.fault());
+  if (reply.text() != nullptr) message += ": " + reply.text()->str();
+  return failure(message);
 }
 
 }  // namespace zonepack

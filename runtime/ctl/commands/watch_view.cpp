@@ -32,7 +32,7 @@ class Line {
       std::size_t end = i + 1;
       while (end < words.size() && (static_cast<unsigned char>(words[end]) & 0xC0) == 0x80) ++end;
       if (width_ < columns_) {
-        // A name may hold anything; the terminal obeys none of it.
+        // A name may hold anything; no control code of it reaches the terminal.
         const bool printable = static_cast<unsigned char>(words[i]) >= 0x20 && words[i] != 0x7F;
         text_ += printable ? std::string(words.substr(i, end - i)) : "?";
         ++width_;
@@ -126,7 +126,7 @@ std::string short_bytes(std::uint64_t bytes) {
 
 std::string event_line(const wire::Event& event) {
   std::string line = format("%12.3f s  ", static_cast<double>(event.t_ns()) / 1e9);
-  // A zoned that knows more kinds of events than we do says so by a number only.
+  // A kind of event that only a newer zoned knows is shown by its number.
   line += event.kind() <= wire::EventKind::End ? to_string(static_cast<EventKind>(event.kind()))
                                                : format("event %d", static_cast<int>(event.kind()));
   if (event.zone_name() != nullptr) line += " " + event.zone_name()->str();

@@ -10,8 +10,8 @@
 
 namespace zonepack {
 
-// What `zonectl watch` shows, and how: a picture of text, made anew for every status. No terminal,
-// no socket, no clock: tests look at the picture.
+// What `zonectl watch` shows, and how: a picture of text, redrawn for every status. No terminal, no
+// socket, no clock: tests check the picture.
 class WatchView {
  public:
   struct Zone {
@@ -30,17 +30,17 @@ class WatchView {
 
   void set_zones(std::vector<Zone> zones) { zones_ = std::move(zones); }
 
-  // A status as it came, `at_s` seconds after the first: adds to the timeline.
+  // Adds a status, received `at_s` seconds after the first, to the timeline.
   void add_status(const wire::Status& status, double at_s);
 
-  // An event, for the last lines.
+  // Adds an event to the last lines.
   void add_event(const wire::Event& event);
 
   // Lines ending in '\n', none wider than the terminal, no more than it has rows. color: with ANSI
   // escapes.
   std::string picture(const wire::Status& status, Size size, bool color) const;
 
-  // One line for those who cannot draw.
+  // One line, for where no picture can be drawn.
   static std::string line(const wire::Status& status);
 
  private:

@@ -26,10 +26,9 @@ int main(int argc, char** argv) {
       frame.extended = message.extended;
       for (const zonepack::DbcSignal& signal : message.signals) {
         const std::string full = name + "." + signal.name;
-        std::string fault;
-        const auto found = loaded.file.find(full, fault);
+        const auto found = loaded.file.find(full);
         if (!found) {
-          std::fprintf(stderr, "%s\n", fault.c_str());
+          std::fprintf(stderr, "%s\n", found.error().message.c_str());
           return 1;
         }
         const auto reading = zonepack::read_signal(found->signal, frame);

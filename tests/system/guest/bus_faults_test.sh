@@ -2,6 +2,7 @@
 # boot: virtual-time disk
 # The CAN interface goes down, comes up, vanishes, is made again, and its controller leaves the bus: zoned waits, says
 # so, counts it, knows less and less where the robot is, and goes on by itself. Then it starts without an interface.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 start=0.88,10.98,-149
 budget=$(cat /payload/budget)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # boot: virtual-time disk
 # zoned run --check tells what this kernel is, above all whether it is a PREEMPT_RT one, and refuses nothing here.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 vcan_up vcan0
 zoned run --config "$config" --map /payload/map --can socketcan:vcan0 --check >table || fail "$(cat table)"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # boot: virtual-time controllers-fd
 # The same with two CAN FD controllers (CTU CAN FD): the drive comes in FD frames with a fast data phase.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 export ZONEPACK_CAN_INTERFACES=can0,can1
 hold_contract can_bus_contract "error frames cannot be sent there" "it cannot be removed"

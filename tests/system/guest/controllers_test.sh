@@ -3,6 +3,7 @@
 # not on armmp: Debian's 32-bit kernel does not reach the I/O ports of QEMU's SJA1000 cards
 # Two classic controllers (SJA1000) with their own driver: frames arrive whole and in order; a drive that one sends
 # reaches zoned through the other; and it is told when its controller goes down.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 export ZONEPACK_CAN_INTERFACES=can0,can1
 hold_contract can_bus_contract "error frames cannot be sent there" "it cannot be removed"

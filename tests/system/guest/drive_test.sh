@@ -4,7 +4,9 @@
 # 16 MiB, is never without its zone, keeps within its budget, and enters the zones that the host's replay enters. A
 # cycle's work takes at most 200 us at p99.99 on this processor of 4 ns an instruction: 50 us where one takes 1 ns; on
 # a 32-bit one, which needs more of them, 300.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
+# shellcheck source=tests/system/guest/unit.sh
 . /payload/tests/unit.sh
 budget=$(cat /payload/budget)
 vcan_up can0

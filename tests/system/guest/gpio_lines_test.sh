@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Simulated lines: an output is seen from outside, an input is driven from outside.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 gpio_sim robot 8
 gpioset -m signal "$chip" 2=1 &

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The robot's lines during a drive, seen and driven from outside: map_ready follows loads, the heartbeat beats, dock,
 # hold and a marker reach the control thread and are recorded; a busy or missing line is refused by name.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 gpio_sim robot 8
 mkdir -p /run/zoned

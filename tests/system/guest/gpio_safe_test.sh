@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # What a chip that keeps its lines (PL061) is left with: after SIGTERM the safe levels; after kill -9 what it was, which
 # zoned --safe-outputs mends.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 chip=$(gpiodetect | sed -n 's/.*\[\(.*pl061\)\].*/\1/p')
 [ -n "$chip" ] || fail "no PL061 here: $(gpiodetect)"

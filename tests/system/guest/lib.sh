@@ -88,6 +88,7 @@ gpio_sim() {  # LABEL COUNT
   echo "$1" >"$sim/bank0/label"
   echo 1 >"$sim/live"
   chip=$(cat "$sim/bank0/chip_name")
+  # shellcheck disable=SC2034  # for the tests
   lines=/sys/devices/platform/$(cat "$sim/dev_name")/$chip
 }
 

@@ -2,6 +2,7 @@
 # boot: disk
 # Power fails while another version of the map is copied beside the one in use, and again right after its manifest came:
 # the robot starts with the old map, then with the new one, whole, where it was.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 state=/data/map-state
 sed "s|^  folder: \"\"|  folder: $state|" "$config" >robot.yaml

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # boot: virtual-time disk
 # A control group's memory.max holds: 20 MiB fit under 32 MiB, 64 MiB are killed, and both are counted.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 group=/sys/fs/cgroup/limit
 mkdir $group

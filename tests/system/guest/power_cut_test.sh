@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # boot: disk
 # A power cut keeps what was synced and renamed, and loses what was not: what tests of our own files stand on.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 if [ ! -e /data/kept ]; then
   echo whole >/data/new

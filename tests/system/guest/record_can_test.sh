@@ -2,6 +2,7 @@
 # boot: virtual-time disk
 # What `zoned run --record-can` writes of a bus is what candump writes beside it, stamps within 1 ms, and canplayer
 # plays it again frame by frame.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 vcan_up vcan0
 vcan_up vcan1

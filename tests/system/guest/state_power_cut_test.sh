@@ -2,6 +2,7 @@
 # boot: disk
 # Power fails three times while zoned runs again and again and writes its state: each time the next run begins where
 # the robot was, as a guess, from a state that is whole and not older than one that was seen before.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 state=/data/state
 sed "s|^  folder: \"\"|  folder: $state|" "$config" >robot.yaml

@@ -2,6 +2,7 @@
 # boot: virtual-time disk
 # The worst wake-up and the worst cycle of the control thread over several runs, on a processor that takes
 # 4 ns for an instruction whatever the host does: none over 200 us, which is 50 us where an instruction takes 1 ns.
+# shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 runs=$(cat /payload/runs)
 vcan_up vcan0

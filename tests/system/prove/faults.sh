@@ -122,7 +122,7 @@ wait $pid && pid= || code=1
 kill -TERM $reader && wait $reader && code=1
 known=(first second) reader= seen="$(field read.json .wrong) wrong" reason="the reader finds no fault"
 ((code != 0)) || [[ $(field read.json .wrong) -gt 0 ]] || code=1
-verdict "none: a reader that knows another map only" $code
+verdict "none: a reader that knows another map only" "$code"
 
 # --- files ---
 settings 's/read: [a-z]* /read: mapped /; s/rate_limit: 0 /rate_limit: 40000 /'

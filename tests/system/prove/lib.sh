@@ -25,6 +25,7 @@ repeat_mission() {  # MISSION LOOPS PATH
 }
 
 # Where memory is limited here: sets cgroup_base and names of files. False where it cannot be.
+# shellcheck disable=SC2034  # for those who source this
 find_memory_cgroups() {
   local v1=/sys/fs/cgroup/memory v2=/sys/fs/cgroup
   if [ -f $v1/memory.limit_in_bytes ]; then

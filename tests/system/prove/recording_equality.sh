@@ -29,6 +29,7 @@ command_until_ended() {  # PID
     zone=${zones[turn++ % ${#zones[@]}]}
     for command in "pin $zone" freeze "pose 0.9 11 -149" "route L1 C3 --hint" unfreeze "unpin $zone" \
       "pose 3 3 90 0.05"; do
+      # shellcheck disable=SC2086  # a command and its arguments
       if "$bin/zonectl" $command >/dev/null 2>&1; then obeyed=$((obeyed + 1)); fi
     done
   done
@@ -67,7 +68,7 @@ for ((run = 1; run <= 4 * runs; run++)); do
   leases=$(jq -s '.[0].leases // 0' readers.json 2>/dev/null || echo 0) cancelled=$(count load_cancelled)
   commands_all=$((commands_all + commands)) leases_all=$((leases_all + leases))
   cancelled_all=$((cancelled_all + cancelled))
-  printf '%4d %8s %12d %8d %8d %8d %8d %8s %8d %10d  %s\n' $run $speed $budget "$(count load_done)" \
+  printf '%4d %8s %12d %8d %8d %8d %8d %8s %8d %10d  %s\n' "$run" "$speed" "$budget" "$(count load_done)" \
     "$(count load_failed)" "$cancelled" "$commands" "$leases" "$(count correction_rejected)" \
     "$(stat -c %s run.zpr)" $verdict
 done

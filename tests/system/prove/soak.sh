@@ -66,7 +66,7 @@ look() {
     esac
   done 2>/dev/null <"/proc/$zoned/status" || return 1
   [ -n "$resident" ] || return 1
-  local threads=(/proc/$zoned/task/*) descriptors=(/proc/$zoned/fd/*) files=("$work"/state/* "$work"/state/flight/*)
+  local threads=("/proc/$zoned/task/"*) descriptors=("/proc/$zoned/fd/"*) files=("$work"/state/* "$work"/state/flight/*)
   local segments=("$work"/state/flight/segment-*)  # as many as the recorder's bytes allow, all open
   echo "$resident $locked ${#threads[@]} $((${#descriptors[@]} - ${#segments[@]})) $((${#files[@]} - ${#segments[@]})) ${#segments[@]}"
 }

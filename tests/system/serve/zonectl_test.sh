@@ -65,6 +65,7 @@ wait $watching || got=$?
 [ $got = 0 ] || { echo "watch: exit $got when interrupted, expected 0"; failed=1; }
 grep -qF $'\x1b[?1049h' "$work/seen" || { echo 'watch: no picture'; failed=1; }
 tail -n +2 "$work/seen" | tr -d '\r' | grep -qF $'\x1b[?1049l' || { echo 'watch: the terminal was left changed'; failed=1; }
+# shellcheck disable=SC2154  # set by coproc
 pid=$run_PID
 eval "exec ${run[1]}>&-"
 wait "$pid"

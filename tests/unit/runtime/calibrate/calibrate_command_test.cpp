@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// zoned calibrate on scenario 1, whose robot has wheels 0.5 % larger and a track 1 % wider than
-// told.
+// zoned calibrate on scenario 1, whose robot has wheels 0.5 % larger and a track 1 % wider than its
+// settings say.
 #include "runtime/calibrate/calibrate_command.hpp"
 
 #include <gmock/gmock.h>
@@ -28,16 +28,16 @@ std::string text_of(const std::string& path) {
 }
 
 Calibration calibrate_scenario1(const Settings& settings) {
-  std::string fault;
-  const auto steps = read_wheel_steps(settings, kLog, fault);
-  const auto truth = read_truth(kTruth, fault);
-  EXPECT_TRUE(steps && truth) << fault;
-  const auto found = calibrate(*steps, *truth, settings.odometry.wheels, fault);
-  EXPECT_TRUE(found.has_value()) << fault;
-  return found.value_or(Calibration{});
+  const auto steps = read_wheel_steps(settings, kLog);
+  EXPECT_TRUE(steps.ok()) << steps.error().message;
+  const auto truth = read_truth(kTruth);
+  EXPECT_TRUE(truth) << truth.error().message;
+  const auto found = calibrate(*steps, *truth, settings.odometry.wheels);
+  EXPECT_TRUE(found.ok()) << found.error().message;
+  return found ? *found : Calibration{};
 }
 
-// The text with each line of the section odometry replaced that `yaml` has, too.
+// The text with each line of the section odometry replaced by that of `yaml`, where it has one.
 std::string pasted(std::string text, const std::string& yaml) {
   std::istringstream lines(yaml);
   std::string line;
@@ -78,7 +78,7 @@ TEST(CalibrateCommand, WhatItPrintsCanBePastedAndThenChangesNothingMore) {
 
 TEST(CalibrateCommand, WritesTheKeysThatTheRobotHas) {
   Calibration c;
-  c.fitted = {1.01, 0.99, 0.6};
+  c.fitted = {.left = 1.01, .right = 0.99, .track_m = 0.6};
   c.sides_differ = true;
   OdometrySettings odometry;
   odometry.unit = WheelUnit::kTurns;
@@ -93,10 +93,10 @@ TEST(CalibrateCommand, WritesTheKeysThatTheRobotHas) {
   EXPECT_THAT(yaml, HasSubstr("  slip_factor: 1.500000  #"));
 }
 
-TEST(CalibrateCommand, WritesJsonAndTellsWhatIsWrong) {
+TEST(CalibrateCommand, WritesJsonAndSaysWhatIsWrong) {
   const std::string json = testing::TempDir() + "calibration.json";
   testing::internal::CaptureStdout();
-  EXPECT_EQ(run_calibrate({kConfig, kLog, kTruth, json}), 0);
+  EXPECT_EQ(run_calibrate({.config = kConfig, .can = kLog, .truth = kTruth, .json = json}), 0);
   const std::string out = testing::internal::GetCapturedStdout();
   EXPECT_THAT(out, HasSubstr("error at the end         1.0"));
   EXPECT_THAT(out,
@@ -108,7 +108,7 @@ TEST(CalibrateCommand, WritesJsonAndTellsWhatIsWrong) {
 
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  EXPECT_EQ(run_calibrate({kConfig, kLog, kTruth, "-"}), 0);
+  EXPECT_EQ(run_calibrate({.config = kConfig, .can = kLog, .truth = kTruth, .json = "-"}), 0);
   EXPECT_EQ(testing::internal::GetCapturedStdout(), text_of(json));
   EXPECT_EQ(testing::internal::GetCapturedStderr(), out);
 
@@ -117,15 +117,21 @@ TEST(CalibrateCommand, WritesJsonAndTellsWhatIsWrong) {
     EXPECT_EQ(run_calibrate(arguments), 1);
     return testing::internal::GetCapturedStderr();
   };
-  EXPECT_THAT(fault_of({"/none.yaml", kLog, kTruth, ""}), HasSubstr("/none.yaml: cannot be read"));
-  EXPECT_THAT(fault_of({kConfig, "/none.log", kTruth, ""}), HasSubstr("/none.log"));
-  EXPECT_THAT(fault_of({kConfig, kLog, "/none.txt", ""}), HasSubstr("/none.txt"));
-  EXPECT_THAT(fault_of({ZONEPACK_SOURCE_DIR "/config/vesc.yaml", kLog, kTruth, ""}),
+  EXPECT_THAT(fault_of({.config = "/none.yaml", .can = kLog, .truth = kTruth, .json = ""}),
+              HasSubstr("/none.yaml: cannot be read"));
+  EXPECT_THAT(fault_of({.config = kConfig, .can = "/none.log", .truth = kTruth, .json = ""}),
+              HasSubstr("/none.log"));
+  EXPECT_THAT(fault_of({.config = kConfig, .can = kLog, .truth = "/none.txt", .json = ""}),
+              HasSubstr("/none.txt"));
+  EXPECT_THAT(fault_of({.config = ZONEPACK_SOURCE_DIR "/config/vesc.yaml",
+                        .can = kLog,
+                        .truth = kTruth,
+                        .json = ""}),
               HasSubstr("holds none of the frames that odometry reads"));
   const std::string twist = testing::TempDir() + "twist.yaml";
   std::ofstream(twist) << "can: {signals: {a: {id: 1, length: 8}}}\n"
                           "odometry: {model: twist, forward: a, yaw_rate: a}\n";
-  EXPECT_THAT(fault_of({twist, kLog, kTruth, ""}),
+  EXPECT_THAT(fault_of({.config = twist, .can = kLog, .truth = kTruth, .json = ""}),
               HasSubstr("wheel scale and track are those of differential-positions"));
 }
 

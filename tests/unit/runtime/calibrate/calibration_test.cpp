@@ -16,8 +16,8 @@ using testing::HasSubstr;
 
 constexpr std::int64_t kStep_ns = 20'000'000;
 
-// A drive at 50 Hz with turns both ways; the wheels tell what they did over `values`, and slip by
-// `slip` of the root of each metre.
+// A drive at 50 Hz with turns both ways. The wheels report what they did divided by `values`, and
+// slip at random: standard deviation `slip` per root of a metre.
 struct Made {
   std::vector<WheelStep> steps;
   std::vector<TruthTrack::Sample> truth;
@@ -36,28 +36,29 @@ Made make_drive(const CalibrationValues& values, double slip, int steps, double 
     made.truth.push_back({(i + 1) * kStep_ns, pose});
     const double noise = slip * std::sqrt(forward);
     made.steps.push_back(
-        {i * kStep_ns, (i + 1) * kStep_ns,
-         (forward - turn * values.track_m / 2) / values.left + noise * normal(random),
-         (forward + turn * values.track_m / 2) / values.right + noise * normal(random), true});
+        {.from_ns = i * kStep_ns,
+         .to_ns = (i + 1) * kStep_ns,
+         .left_m = (forward - turn * values.track_m / 2) / values.left + noise * normal(random),
+         .right_m = (forward + turn * values.track_m / 2) / values.right + noise * normal(random),
+         .known = true});
   }
   return made;
 }
 
-std::optional<Calibration> run(const Made& made, std::string& fault) {
+Outcome<Calibration> outcome_of(const Made& made) {
   WheelOdometrySettings settings;
   settings.geometry.track_m = 0.4;
-  return calibrate(made.steps, TruthTrack(made.truth), settings, fault);
+  return calibrate(made.steps, TruthTrack(made.truth), settings);
 }
 
 Calibration run(const Made& made) {
-  std::string fault;
-  const auto found = run(made, fault);
-  EXPECT_TRUE(found.has_value()) << fault;
-  return found.value_or(Calibration{});
+  const auto found = outcome_of(made);
+  EXPECT_TRUE(found.ok()) << found.error().message;
+  return found ? *found : Calibration{};
 }
 
 TEST(Calibration, FindsScaleAndTrackOfWheelsThatDoNotSlip) {
-  const Calibration c = run(make_drive({1.02, 1.02, 0.43}, 0, 5000));
+  const Calibration c = run(make_drive({.left = 1.02, .right = 1.02, .track_m = 0.43}, 0, 5000));
   EXPECT_FALSE(c.sides_differ);
   EXPECT_NEAR(c.fitted.left, 1.02, 1e-6);
   EXPECT_NEAR(c.fitted.right, 1.02, 1e-6);
@@ -67,8 +68,9 @@ TEST(Calibration, FindsScaleAndTrackOfWheelsThatDoNotSlip) {
   EXPECT_NEAR(c.seconds, 100, 2.1);
 }
 
-TEST(Calibration, TellsTheSidesApartWhenTheyDiffer) {
-  const Calibration c = run(make_drive({1.01, 0.99, 0.41}, 0.001, 5000));
+TEST(Calibration, DistinguishesTheSidesWhenTheyDiffer) {
+  const Calibration c =
+      run(make_drive({.left = 1.01, .right = 0.99, .track_m = 0.41}, 0.001, 5000));
   EXPECT_TRUE(c.sides_differ);
   EXPECT_NEAR(c.fitted.left, 1.01, 1e-3);
   EXPECT_NEAR(c.fitted.right, 0.99, 1e-3);
@@ -77,27 +79,31 @@ TEST(Calibration, TellsTheSidesApartWhenTheyDiffer) {
 }
 
 TEST(Calibration, TakesTheSidesToBeAlikeWhenTheirDifferenceMayBeSlip) {
-  const Calibration c = run(make_drive({1.005, 1.005, 0.404}, 0.003, 5000));
+  const Calibration c =
+      run(make_drive({.left = 1.005, .right = 1.005, .track_m = 0.404}, 0.003, 5000));
   EXPECT_FALSE(c.sides_differ);
   EXPECT_EQ(c.fitted.left, c.fitted.right);
-  // The truth is within three of the standard deviations that it tells.
+  // The truth is within three of the reported standard deviations.
   EXPECT_NEAR(c.fitted.left, 1.005, 3 * c.scale_sigma);
   EXPECT_NEAR(c.fitted.track_m, 0.404, 3 * c.track_sigma_m);
   EXPECT_GT(c.scale_sigma, 1e-5);
   EXPECT_LT(c.scale_sigma, 2e-3);
 }
 
-TEST(Calibration, RefusesADriveThatTellsTooLittle) {
-  std::string fault;
-  // 5 s at 0.5 m/s.
-  EXPECT_FALSE(run(make_drive({1, 1, 0.4}, 0, 250), fault));
-  EXPECT_THAT(fault, HasSubstr("needed: at least 10.0 m and 6.3 rad (a full turn), better 100 m"));
-  EXPECT_FALSE(run(make_drive({1, 1, 0.4}, 0, 5000, 0.01), fault));  // long, but hardly a turn
-  EXPECT_THAT(fault, HasSubstr("m and 0."));
+TEST(Calibration, RefusesADriveThatIsNotInformative) {
+  const auto short_drive =
+      outcome_of(make_drive({.left = 1, .right = 1, .track_m = 0.4}, 0, 250));  // 5 s at 0.5 m/s
+  ASSERT_FALSE(short_drive);
+  EXPECT_THAT(short_drive.error().message,
+              HasSubstr("needed: at least 10.0 m and 6.3 rad (a full turn), better 100 m"));
+  const auto straight_drive =
+      outcome_of(make_drive({.left = 1, .right = 1, .track_m = 0.4}, 0, 5000, 0.01));
+  ASSERT_FALSE(straight_drive);
+  EXPECT_THAT(straight_drive.error().message, HasSubstr("m and 0."));
 }
 
 TEST(Calibration, DoesNotLookAcrossGapsNorBeyondTheTruth) {
-  Made made = make_drive({1.02, 1.02, 0.43}, 0, 6000);
+  Made made = make_drive({.left = 1.02, .right = 1.02, .track_m = 0.43}, 0, 6000);
   for (std::size_t i = 100; i < made.steps.size(); i += 500) {
     made.steps[i].left_m += 3;
     made.steps[i].known = false;

@@ -31,7 +31,7 @@ class CycleTest : public testing::Test, public EventSink {
 
   void on_event(const Event& event) noexcept override { events.push_back(event); }
 
-  // One cycle, with a frame that tells how far the wheels have come.
+  // One cycle, with a frame that says how far the wheels have come.
   void step(std::vector<PoseCorrection> fixes = {}, bool with_frame = true) {
     now_ns += kPeriod_ns;
     loader.advance_to(now_ns);
@@ -68,7 +68,12 @@ class CycleTest : public testing::Test, public EventSink {
   }
 
   PoseCorrection fix(double x_m, double y_m, double yaw_rad = 0) const {
-    return {now_ns, now_ns, {x_m, y_m, yaw_rad}, 0.03, 0.03, 0.01};
+    return {.stamp_ns = now_ns,
+            .received_ns = now_ns,
+            .T_map_base = {x_m, y_m, yaw_rad},
+            .sigma_x_m = 0.03,
+            .sigma_y_m = 0.03,
+            .sigma_yaw_rad = 0.01};
   }
 
   // The fixes of one second apart that make a pose trusted.
@@ -99,18 +104,27 @@ class CycleTest : public testing::Test, public EventSink {
   }
 
   const ZoneGraph graph = testing_support::three_rooms();
-  const std::vector<ZoneNeed> needs = std::vector<ZoneNeed>(3, ZoneNeed{4, 10});
-  const std::vector<LoadWork> work = std::vector<LoadWork>(3, LoadWork{100, 0});
+  const std::vector<ZoneNeed> needs =
+      std::vector<ZoneNeed>(3, ZoneNeed{.slots = 4, .signatures = 10});
+  const std::vector<LoadWork> work = std::vector<LoadWork>(3, LoadWork{.stored_bytes = 100});
   const std::vector<float> load_s = std::vector<float>(3, 0.12f);
-  Residency memory{3, {800, 0, 100, 0, {8, 20}, 0}};
-  ModelledLoader loader{8, work, {1000, 1000}, nullptr};
+  Residency memory{
+      3, {.budget = 800, .slot_bytes = 100, .largest_pair = {.slots = 8, .signatures = 20}}};
+  ModelledLoader loader{8, work, {.storage = 1000, .decode = 1000}, nullptr};
   static CycleConfig robot() {
     CycleConfig config = testing_support::sample_robot();
-    config.dock = CycleConfig::Dock{{10, 2, 0}, 0.02, 0.02};
-    config.markers = {{"door", "a", "b", 0.5}};
+    config.dock = CycleConfig::Dock{.T_map_base = {10, 2, 0}, .sigma_m = 0.02, .sigma_rad = 0.02};
+    config.markers = {{.name = "door", .zone = "a", .other = "b", .reach_m = 0.5}};
     return config;
   }
-  Cycle cycle{robot(), {graph, needs, load_s, {}, memory, loader, *this}};
+  Cycle cycle{robot(),
+              {.graph = graph,
+               .needs = needs,
+               .load_s = load_s,
+               .pinned = {},
+               .memory = memory,
+               .loader = loader,
+               .events = *this}};
   Command command(Command::Kind kind, ZoneId zone = kNoZone) {
     Command made;
     made.kind = kind;
@@ -126,9 +140,9 @@ class CycleTest : public testing::Test, public EventSink {
     return cycle.replies()[0];
   }
 
-  // One cycle that takes a change of a line, as old as told.
+  // One cycle that takes a line's change from age_ns ago.
   void edge(std::uint32_t line, bool active, std::int64_t age_ns = 0) {
-    edges = {{now_ns + kPeriod_ns - age_ns, line, active}};
+    edges = {{.stamp_ns = now_ns + kPeriod_ns - age_ns, .line = line, .active = active}};
     step();
   }
 
@@ -199,7 +213,7 @@ TEST_F(CycleTest, FollowsTheFixesAtOnceWhenTheyMoveThePose) {
   EXPECT_TRUE(cycle.state().zone_resident);
 }
 
-TEST_F(CycleTest, TellsWhenOdometryIsMissingAndWhenItIsBack) {
+TEST_F(CycleTest, ReportsWhenOdometryIsMissingAndWhenItIsBack) {
   trust(2, 2);
   events.clear();
   for (int i = 0; i < 50; ++i) step({}, false);  // 0.5 s, over the timeout of 0.3 s
@@ -208,14 +222,14 @@ TEST_F(CycleTest, TellsWhenOdometryIsMissingAndWhenItIsBack) {
   EXPECT_THAT(words(), ElementsAre("odometry_stale", "odometry_resumed"));
 }
 
-TEST_F(CycleTest, TellsWhenTheControllerLeavesTheBusAndIsStartedAgain) {
+TEST_F(CycleTest, ReportsWhenTheControllerLeavesTheBusAndRestarts) {
   trust(2, 2);
   events.clear();
   const auto take = [this](std::vector<CanFrame> frames) {
     now_ns += kPeriod_ns;
-    cycle.run({now_ns, frames, {}, {}, {}});
+    cycle.run({.now_ns = now_ns, .frames = frames});
   };
-  // However many a broken bus sends, one cycle tells it once.
+  // However many a broken bus sends, one cycle reports it once.
   take({error_frame(kCanErrorBusOff), error_frame(kCanErrorBusOff)});
   EXPECT_THAT(words(), ElementsAre("bus_off"));
   take({error_frame(kCanErrorController, kCanControllerPassive)});
@@ -301,7 +315,7 @@ TEST_F(CycleTest, TheDocksContactPlacesTheRobotAtOnce) {
   EXPECT_EQ(cycle.state().zone, 2u);
 }
 
-TEST_F(CycleTest, TheDockIsEnoughToTrustAPoseThatNobodyKnew) {
+TEST_F(CycleTest, TheDockIsEnoughToTrustAnUnknownPose) {
   step();
   edge(LineEdge::kDock, true);
   EXPECT_TRUE(cycle.state().pose.trusted);
@@ -316,7 +330,7 @@ TEST_F(CycleTest, AContactFromBeforeTheHistoryMovesNothing) {
   EXPECT_STREQ(events.back().reason, "too_old");
 }
 
-TEST_F(CycleTest, TheHoldLineFreezesEvictionBesideTheCommand) {
+TEST_F(CycleTest, TheHoldLineFreezesEvictionIndependentlyOfTheCommand) {
   trust(2, 2);
   drive(2.5);  // a and b fill the memory
   edge(LineEdge::kHold, true);

@@ -18,13 +18,23 @@ namespace {
 // bytes. A load takes 0.1 s.
 struct World {
   World(ZoneLoader& loader, EventSink& events, ZoneDirectory& directory, ByteCount budget)
-      : memory(3, {budget, 100, 100, 0, {8, 20}, 0}),
-        cycle(testing_support::sample_robot(),
-              {graph, needs, load_s, {}, memory, loader, events, &directory}) {}
+      : memory(3, {.budget = budget,
+                   .fixed = 100,
+                   .slot_bytes = 100,
+                   .largest_pair = {.slots = 8, .signatures = 20}}),
+        cycle(testing_support::sample_robot(), {.graph = graph,
+                                                .needs = needs,
+                                                .load_s = load_s,
+                                                .pinned = {},
+                                                .memory = memory,
+                                                .loader = loader,
+                                                .events = events,
+                                                .directory = &directory}) {}
 
   Catalog catalog;
   const ZoneGraph graph = testing_support::three_rooms();
-  const std::vector<ZoneNeed> needs = std::vector<ZoneNeed>(3, ZoneNeed{4, 10});
+  const std::vector<ZoneNeed> needs =
+      std::vector<ZoneNeed>(3, ZoneNeed{.slots = 4, .signatures = 10});
   const std::vector<float> load_s = std::vector<float>(3, 0.12f);
   Residency memory;
   Cycle cycle;
@@ -59,7 +69,7 @@ class MapChange : public testing::Test, public EventSink, public ZoneDirectory, 
     loader.advance_to(now_ns);
     std::vector<LoadResult> loads;
     while (const auto load = loader.poll()) loads.push_back(*load);
-    maps.run({now_ns, {}, fixes, loads, commands});
+    maps.run({.now_ns = now_ns, .corrections = fixes, .loads = loads, .commands = commands});
     EXPECT_LE(old_world.memory.charged(), 1000u);
     EXPECT_LE(new_world.memory.charged(), 1000u);
   }
@@ -68,15 +78,24 @@ class MapChange : public testing::Test, public EventSink, public ZoneDirectory, 
     for (int i = 0; i < cycles; ++i) step();
   }
 
-  // Trusted in room a, whose neighbour is pinned into memory too.
+  PoseCorrection fix_in_a() const {
+    return {.stamp_ns = now_ns,
+            .received_ns = now_ns,
+            .T_map_base = {2, 2, 0},
+            .sigma_x_m = 0.03,
+            .sigma_y_m = 0.03,
+            .sigma_yaw_rad = 0.01};
+  }
+
+  // Trusted in room a, with a hint that keeps its neighbour in memory too.
   void stand_in_a() {
     step();
-    step({{now_ns, now_ns, {2, 2, 0}, 0.03, 0.03, 0.01}});
+    step({fix_in_a()});
     Command hint;
     hint.kind = Command::Kind::kRouteHint;
     hint.route_length = 2;
     hint.route = {0, 1};
-    step({{now_ns, now_ns, {2, 2, 0}, 0.03, 0.03, 0.01}}, {hint});
+    step({fix_in_a()}, {hint});
     stand(40);
     ASSERT_TRUE(old_world.memory.resident(0) && old_world.memory.resident(1));
     ASSERT_TRUE(maps.map().cycle.state().map_ready);
@@ -90,15 +109,15 @@ class MapChange : public testing::Test, public EventSink, public ZoneDirectory, 
   bool readable[3] = {};
   bool broken = false;
   std::vector<std::string> words;
-  std::vector<LoadWork> work = std::vector<LoadWork>(3, LoadWork{100, 0});
-  ModelledLoader loader{9, work, {1000, 1000}, this};
+  std::vector<LoadWork> work = std::vector<LoadWork>(3, LoadWork{.stored_bytes = 100});
+  ModelledLoader loader{9, work, {.storage = 1000, .decode = 1000}, this};
   World old_world{loader, *this, *this, 1000};
   World new_world{loader, *this, *this, 1000};
   MapSwitcher maps{old_world.in_use, loader, this};
   std::int64_t now_ns = 1'000'000'000;
 };
 
-TEST_F(MapChange, LoadsTheRobotsZoneOfTheNewMapBesideTheOldOneThenChanges) {
+TEST_F(MapChange, LoadsTheRobotsZoneOfTheNewMapNextToTheOldOneThenChanges) {
   stand_in_a();
   ASSERT_TRUE(maps.offer(new_world.in_use));
   step();
@@ -144,7 +163,7 @@ TEST_F(MapChange, KeepsTheOldMapWhenTheZoneCannotBeLoaded) {
 
 TEST_F(MapChange, KeepsTheOldMapWhenBothDoNotFit) {
   World large{loader, *this, *this, 100 + 900};
-  const std::vector<ZoneNeed> needs(3, ZoneNeed{5, 10});
+  const std::vector<ZoneNeed> needs(3, ZoneNeed{.slots = 5, .signatures = 10});
   MapInUse in_use{large.catalog, large.graph, needs, large.memory, large.cycle};
   stand_in_a();
   maps.offer(in_use);  // 100 + 400 + 100 + 500 > 1000
@@ -172,7 +191,7 @@ TEST_F(MapChange, KeepsTheOldMapWhenTheNewOneHasNoRoomForTheOldTables) {
   EXPECT_TRUE(told("map_refused no room"));
 }
 
-TEST_F(MapChange, TellsWhyAMapThatWasToBeOfferedCannotBeUsed) {
+TEST_F(MapChange, SaysWhyAMapToBeOfferedCannotBeUsed) {
   stand_in_a();
   maps.run({now_ns += 10'000'000, {}, {}, {}, {}, {0, ErrorCode::kTruncated}});
   EXPECT_TRUE(told("map_offered") && told("map_refused truncated"));

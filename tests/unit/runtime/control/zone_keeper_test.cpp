@@ -23,9 +23,12 @@ class Keeper : public testing::Test, public EventSink, public ZoneFiller {
   void make(std::uint32_t slots, std::vector<ZoneId> pins) {
     pinned = std::move(pins);
     memory = std::make_unique<Residency>(
-        needs.size(), ResidencyLimits{ByteCount{slots} * 100, 0, 100, 0, {4, 4}, 0});
+        needs.size(), ResidencyLimits{.budget = ByteCount{slots} * 100,
+                                      .slot_bytes = 100,
+                                      .largest_pair = {.slots = 4, .signatures = 4}});
     for (const ZoneId zone : pinned) ASSERT_TRUE(memory->pin(zone, needs[zone]).ok());
-    loader = std::make_unique<ModelledLoader>(slots, work, LoadRates{1000, 1000}, this);
+    loader = std::make_unique<ModelledLoader>(slots, work,
+                                              LoadRates{.storage = 1000, .decode = 1000}, this);
     keeper = std::make_unique<ZoneKeeper>(*memory, *loader, events, needs, pinned);
   }
 
@@ -51,8 +54,8 @@ class Keeper : public testing::Test, public EventSink, public ZoneFiller {
   using Log = std::vector<std::string>;
   Log taken() { return std::exchange(log, {}); }
 
-  std::vector<ZoneNeed> needs = std::vector<ZoneNeed>(6, ZoneNeed{4, 4});
-  std::vector<LoadWork> work = std::vector<LoadWork>(6, LoadWork{1000, 0});
+  std::vector<ZoneNeed> needs = std::vector<ZoneNeed>(6, ZoneNeed{.slots = 4, .signatures = 4});
+  std::vector<LoadWork> work = std::vector<LoadWork>(6, LoadWork{.stored_bytes = 1000});
   std::vector<ZoneId> pinned;
   ZoneId broken = kNoZone;
   EventStamper events{*this};
@@ -82,7 +85,7 @@ TEST_F(Keeper, UnloadsTheZoneLeftLongestAgo) {
   EXPECT_EQ(taken(), (Log{"evicted 0", "load_started 2"}));
 }
 
-TEST_F(Keeper, CancelsALoadThatNobodyWantsAnyMore) {
+TEST_F(Keeper, CancelsALoadThatIsNoLongerWanted) {
   step({0});
   step({0, 1});
   taken();
@@ -128,7 +131,7 @@ TEST_F(Keeper, AnUrgentZoneTakesTheRoomOfALessUrgentOne) {
   EXPECT_EQ(taken(), (Log{"load_done 2", "blocked 1"}));
 }
 
-TEST_F(Keeper, AZoneThatIsOnlyPossibleTakesNobodysRoom) {
+TEST_F(Keeper, AZoneThatIsOnlyPossibleTakesNoOtherZonesRoom) {
   step({0});
   step({0, 1});
   step({0, 1});
@@ -141,7 +144,7 @@ TEST_F(Keeper, AZoneThatIsOnlyPossibleTakesNobodysRoom) {
 TEST_F(Keeper, ADamagedZoneCostsOnlyItselfAndIsTriedAgainLaterAndLater) {
   broken = 0;
   step({0, 1});
-  step({0, 1});  // failed: next try a second later; zone 1 goes ahead
+  step({0, 1});  // failed: retried a second later; zone 1 goes first
   EXPECT_EQ(taken(), (Log{"load_started 0", "load_failed 0", "load_started 1"}));
   step({0, 1});
   EXPECT_EQ(taken(), (Log{"load_done 1", "load_started 0"}));

@@ -27,9 +27,8 @@ class InputLinesTest : public testing::Test {
 
   InputLines& opened() {
     lines = std::make_unique<InputLines>(chips, gpio, board);
-    std::string fault;
-    std::vector<std::string> warnings;
-    EXPECT_TRUE(lines->open(false, fault, warnings)) << fault;
+    const auto opened = lines->open(false);
+    EXPECT_TRUE(opened) << opened.error().message;
     return *lines;
   }
   void drive(unsigned line, bool high) {
@@ -116,10 +115,9 @@ TEST_F(InputLinesTest, ALineThatFailsCountsAsInactiveAndComesBack) {
 TEST_F(InputLinesTest, AnOutputIsRefusedAsAnInputByName) {
   chips.make_output("robot", 2);
   InputLines refused(chips, gpio, board);
-  std::string fault;
-  std::vector<std::string> warnings;
-  EXPECT_FALSE(refused.open(false, fault, warnings));
-  EXPECT_THAT(fault,
+  const auto opened = refused.open(false);
+  ASSERT_FALSE(opened);
+  EXPECT_THAT(opened.error().message,
               HasSubstr("gpio.zone_markers.door: line 2 of chip robot: set up as an output"));
 }
 

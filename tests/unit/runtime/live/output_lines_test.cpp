@@ -33,7 +33,8 @@ class OutputLinesTest : public testing::Test {
   OutputLines& opened() {
     lines = std::make_unique<OutputLines>(chips, gpio, board);
     lines->set_period(10 * kMilli_ns);
-    EXPECT_TRUE(lines->open(false, fault, warnings)) << fault;
+    const auto opened = lines->open(false);
+    EXPECT_TRUE(opened) << opened.error().message;
     return *lines;
   }
   // A control cycle, and what the thread does after it.
@@ -56,8 +57,6 @@ class OutputLinesTest : public testing::Test {
   std::unique_ptr<OutputLines> lines;
   LiveStatus status;
   LoadEnd load;
-  std::string fault;
-  std::vector<std::string> warnings;
   std::int64_t now_ns = 1'000'000'000;
 };
 
@@ -154,15 +153,18 @@ TEST_F(OutputLinesTest, AMissingOrBusyLineIsRefusedByNameOrLeftOut) {
   gpio.map_ready->line = "9";
   chips.occupy("robot", 1, "somebody");
   OutputLines strict(chips, gpio, board);
-  EXPECT_FALSE(strict.open(false, fault, warnings));
-  EXPECT_THAT(fault, HasSubstr("gpio.map_ready: line 9 of chip robot: the chip has no such line"));
-  EXPECT_THAT(fault, HasSubstr("--allow-degraded"));
+  const auto refused = strict.open(false);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message,
+              HasSubstr("gpio.map_ready: line 9 of chip robot: the chip has no such line"));
+  EXPECT_THAT(refused.error().message, HasSubstr("--allow-degraded"));
   LineBoard other;
   OutputLines lenient(chips, gpio, other);
-  EXPECT_TRUE(lenient.open(true, fault, warnings));
-  EXPECT_THAT(warnings, ElementsAre(HasSubstr("gpio.map_ready"),
-                                    HasSubstr("gpio.fault: line 1 of chip robot: held by "
-                                              "somebody")));
+  const auto opened = lenient.open(true);
+  ASSERT_TRUE(opened);
+  EXPECT_THAT(*opened, ElementsAre(HasSubstr("gpio.map_ready"),
+                                   HasSubstr("gpio.fault: line 1 of chip robot: held by "
+                                             "somebody")));
   EXPECT_FALSE(other.rows()[1].working.load());
   chips.release("robot", 1);
   lenient.set_period(10 * kMilli_ns);

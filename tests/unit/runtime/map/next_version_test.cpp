@@ -12,11 +12,11 @@ namespace {
 
 class NextVersion : public testing::Test {
  protected:
-  ErrorCode check() {
-    fault.clear();
-    return check_next_version(in_use.catalog(), next.catalog(), kDefaultReadMode, fault)
-        .error()
-        .code;
+  ErrorCode check() { return check(in_use.catalog(), next.catalog()); }
+  ErrorCode check(const Catalog& from, const Catalog& to) {
+    const Failure failed = check_next_version(from, to, kDefaultReadMode).error();
+    fault = failed.message;
+    return failed.code;
   }
   bool names(const std::string& text) const { return fault.find(text) != std::string::npos; }
 
@@ -52,13 +52,10 @@ TEST_F(NextVersion, IsRefusedWhenAPackIsAnotherThanTheManifestTellsOf) {
 }
 
 TEST_F(NextVersion, IsNotTheVersionInUseAndNoOtherMap) {
-  EXPECT_EQ(
-      check_next_version(next.catalog(), next.catalog(), kDefaultReadMode, fault).error().code,
-      ErrorCode::kExists);
+  EXPECT_EQ(check(next.catalog(), next.catalog()), ErrorCode::kExists);
   Catalog other = next.catalog();
   other.lineage[0] ^= 1;
-  EXPECT_EQ(check_next_version(in_use.catalog(), other, kDefaultReadMode, fault).error().code,
-            ErrorCode::kMismatch);
+  EXPECT_EQ(check(in_use.catalog(), other), ErrorCode::kMismatch);
   EXPECT_TRUE(names("manifest.zpm")) << fault;
 }
 

@@ -132,7 +132,7 @@ TEST(CanSignals, KnowsTheBytesASignalNeeds) {
   EXPECT_EQ(bytes_needed({0, 65, ByteOrder::kBig}), std::nullopt);
 }
 
-TEST(CanSignals, TellsValidSignals) {
+TEST(CanSignals, RecognisesValidSignals) {
   EXPECT_TRUE(is_valid(signal(0, 8, ByteOrder::kLittle)));
   EXPECT_FALSE(is_valid(signal(0, 16, ByteOrder::kLittle, SignalType::kFloat)));
   EXPECT_FALSE(is_valid(signal(0, 32, ByteOrder::kLittle, SignalType::kDouble)));

@@ -55,9 +55,9 @@ TEST(CanOpenWatch, WantsEveryNodeOperationalAndHeardInTime) {
   EXPECT_EQ(watch.counters().not_operational, 1u);
 }
 
-TEST(CanOpenWatch, TellsNodesThatStartAnew) {
+TEST(CanOpenWatch, ReportsNodesThatRestart) {
   CanOpenWatch watch(two_nodes());
-  EXPECT_FALSE(watch.take(frame(0, 0x701, {0})));  // the first start is none
+  EXPECT_FALSE(watch.take(frame(0, 0x701, {0})));  // the first start is not a restart
   watch.take(frame(10, 0x701, {5}));
   EXPECT_TRUE(watch.take(frame(50, 0x701, {0})));
   EXPECT_EQ(watch.counters().boots, 1u);
@@ -118,7 +118,7 @@ struct Drives {
 
 TEST(CanOpenOdometry, GoesStaleWhenAHeartbeatIsLostAndBridgesThePauseAfterwards) {
   Drives drives;
-  EXPECT_FALSE(drives.at(0, 0));  // nobody has been heard yet
+  EXPECT_FALSE(drives.at(0, 0));  // no node has been heard yet
   EXPECT_EQ(drives.odometry->counters().unwatched, 2u);
   drives.heartbeat(5);
   drives.at(10, 0);

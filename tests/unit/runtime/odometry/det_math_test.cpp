@@ -21,8 +21,8 @@ double error_of(double got, long double exact) {
   return static_cast<double>(std::abs(static_cast<long double>(got) - exact));
 }
 
-// Uniform in [-limit, limit] from the generator's bits alone: std::uniform_real_distribution is not
-// the same in every library.
+// Uniform in [-limit, limit] from the generator's bits alone: std::uniform_real_distribution
+// differs between libraries.
 double uniform(std::mt19937_64& random, double limit) {
   return (static_cast<double>(random() >> 11) * 0x1p-53 * 2 - 1) * limit;
 }

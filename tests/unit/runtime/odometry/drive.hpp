@@ -44,8 +44,12 @@ struct Drive {
   // A fix of the pose at `stamp`, off by (dx, dy, dyaw).
   PoseCorrection fix(std::int64_t stamp_ns, double dx = 0, double dy = 0, double dyaw = 0) const {
     const Pose2& p = at(stamp_ns);
-    return {stamp_ns, now(), {p.x_m + dx, p.y_m + dy, wrap_angle(p.yaw_rad + dyaw)},
-            0.03,     0.03,  0.01};
+    return {.stamp_ns = stamp_ns,
+            .received_ns = now(),
+            .T_map_base = {p.x_m + dx, p.y_m + dy, wrap_angle(p.yaw_rad + dyaw)},
+            .sigma_x_m = 0.03,
+            .sigma_y_m = 0.03,
+            .sigma_yaw_rad = 0.01};
   }
   CorrectionVerdict correct(std::int64_t stamp_ns, double dx = 0, double dy = 0, double dyaw = 0) {
     return filter.correct(fix(stamp_ns, dx, dy, dyaw), now());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds whatever comes: honest, bounded, finite, the same bits everywhere.
+// What holds for any input: honest, bounded, finite, the same bits everywhere.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -128,12 +128,12 @@ TEST(PoseFilterInvariants, StaysFiniteUnderRandomInput) {
     now += static_cast<std::int64_t>(random() % 40) * kMs;
     switch (random() % 8) {
       case 0: {
-        PoseCorrection fix{now - static_cast<std::int64_t>(random() % 800) * kMs,
-                           now,
-                           {unit(random) * 3, unit(random) * 3, unit(random) * 7},
-                           0.1,
-                           0.1,
-                           0.1};
+        PoseCorrection fix{.stamp_ns = now - static_cast<std::int64_t>(random() % 800) * kMs,
+                           .received_ns = now,
+                           .T_map_base = {unit(random) * 3, unit(random) * 3, unit(random) * 7},
+                           .sigma_x_m = 0.1,
+                           .sigma_y_m = 0.1,
+                           .sigma_yaw_rad = 0.1};
         if (random() % 20 == 0) fix.sigma_x_m = std::pow(10.0, unit(random) * 12);
         filter.correct(fix, now);
         break;

@@ -76,7 +76,7 @@ TEST(PoseFilter, AGivenStartIsAGuessThatHoldsUntilFixesAgree) {
   EXPECT_EQ(drive.correct_now(4, 0, 0), Verdict::kHypothesis);
   EXPECT_LT(drive.error_m(), 1e-9);
   EXPECT_EQ(drive.filter.hypotheses().size(), 2u);
-  // One that agrees is better than the guess, and is not yet trust.
+  // One that agrees is better than the guess, but not yet trusted.
   drive.steps(50);
   EXPECT_EQ(drive.correct_now(0.05, 0, 0), Verdict::kHypothesis);
   EXPECT_NEAR(drive.error_m(), 0.05, 1e-9);
@@ -189,7 +189,7 @@ TEST(PoseFilter, RefusedFixesThatDisagreeOrAreInterruptedDoNotMoveThePose) {
   EXPECT_LT(drive.error_m(), 1e-9);
 }
 
-// Two localizers that contradict each other, each true to itself: nobody knows who is right.
+// Two localizers that contradict each other, each consistent in itself: which is right is unknown.
 TEST(PoseFilter, IsNotTrustedWhileRefusedFixesKeepAgreeingWithEachOther) {
   Drive drive;
   drive.trust();
@@ -273,7 +273,7 @@ TEST(PoseFilter, AResetIsBelievedAtOnceWhereverItLeads) {
   EXPECT_EQ(drive.filter.counters().used, 2u);
 }
 
-TEST(PoseFilter, AResetActsAtItsStampAndOdometrySinceGoesOn) {
+TEST(PoseFilter, AResetActsAtItsStampAndKeepsOdometrySince) {
   Drive drive;
   drive.trust();
   const std::int64_t contact_ns = drive.now();

@@ -13,7 +13,7 @@ namespace {
 
 using TimedVerdict = CorrectionVerdict;
 
-// What would be the result had the fix not been late: bit for bit.
+// The same result as if the fix had not been late, bit for bit.
 TEST(PoseFilterTime, ALateFixActsAtItsStamp) {
   Drive in_time, late;
   in_time.trust();
@@ -55,7 +55,12 @@ TEST(PoseFilterTime, AFixBetweenTwoSamplesIsCarriedAlongTheArc) {
   // The pose in the middle of the last step.
   const Pose2 before = drive.truth[drive.truth.size() - 2];
   const Pose2 middle = compose(before, along_arc(0.02, 0.05));
-  const PoseCorrection fix{drive.now() - 10 * kMs, drive.now(), middle, 1e-6, 1e-6, 1e-6};
+  const PoseCorrection fix{.stamp_ns = drive.now() - 10 * kMs,
+                           .received_ns = drive.now(),
+                           .T_map_base = middle,
+                           .sigma_x_m = 1e-6,
+                           .sigma_y_m = 1e-6,
+                           .sigma_yaw_rad = 1e-6};
   EXPECT_EQ(drive.filter.correct(fix, drive.now()), TimedVerdict::kUsed);
   EXPECT_LT(drive.error_m(), 1e-9);
 }
@@ -85,7 +90,7 @@ TEST(PoseFilterTime, ARobotThatMovedWhenOdometryWentMissingMayBeFarther) {
   EXPECT_NEAR(position_sigma_m(estimate.covariance), std::sqrt(1 + 0.09 + before * before), 0.01);
 }
 
-// Wheel positions tell after a pause how far the robot went in it; fixes from the pause count, too.
+// After a pause wheel positions show how far the robot went in it; fixes from the pause count too.
 TEST(PoseFilterTime, TheMotionOfAPauseIsPutWhereItBelongs) {
   for (const bool with_fix : {false, true}) {
     Drive drive;
@@ -146,7 +151,12 @@ TEST(PoseFilterTime, SurvivesAClockThatWasSetBack) {
   increment.to_ns = drive.now() - 3'600'000 * kMs;
   drive.filter.predict(increment);
   EXPECT_EQ(drive.filter.estimate(increment.to_ns).T_map_base, before);
-  PoseCorrection fix{increment.to_ns, increment.to_ns, before, 0.03, 0.03, 0.01};
+  PoseCorrection fix{.stamp_ns = increment.to_ns,
+                     .received_ns = increment.to_ns,
+                     .T_map_base = before,
+                     .sigma_x_m = 0.03,
+                     .sigma_y_m = 0.03,
+                     .sigma_yaw_rad = 0.01};
   EXPECT_EQ(drive.filter.correct(fix, increment.to_ns), TimedVerdict::kUsed);
 }
 
@@ -154,11 +164,16 @@ TEST(PoseFilterTime, FastOdometrySharesEntriesOfTheHistory) {
   PoseFilterSettings settings;
   settings.history_s = 1;
   PoseFilter filter(settings);
-  // 1 kHz: 51 entries of 20 ms hold a second all the same.
+  // 1 kHz: 51 entries of 20 ms still hold a second.
   Pose2 pose;
   std::vector<Pose2> truth{pose};
   const auto fix = [&](std::int64_t ms, double sigma) {
-    return PoseCorrection{ms * kMs, 0, truth[static_cast<std::size_t>(ms)], sigma, sigma, sigma};
+    return PoseCorrection{.stamp_ns = ms * kMs,
+                          .received_ns = 0,
+                          .T_map_base = truth[static_cast<std::size_t>(ms)],
+                          .sigma_x_m = sigma,
+                          .sigma_y_m = sigma,
+                          .sigma_yaw_rad = sigma};
   };
   for (std::int64_t ms = 1; ms <= 3000; ++ms) {
     OdometryIncrement increment;

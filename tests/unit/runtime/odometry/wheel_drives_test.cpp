@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole drives of every wheel model, from frames to a pose, against the path they were made from.
+// Whole drives with every wheel model, from frames to a pose, against the path they were made from.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -80,7 +80,7 @@ double drive(const WheelOdometrySettings& settings, bool holonomic, const Wheels
          std::abs(wrap_angle(pose.yaw_rad - truth.yaw_rad));
 }
 
-// A difference of 45 m of way and many turns; what is left is how speeds are read at 100 Hz.
+// After 45 m and many turns; the remaining error comes from reading speeds at 100 Hz.
 constexpr double kClose = 2e-3;
 
 TEST(WheelDrives, SkidSteering) {
@@ -172,7 +172,7 @@ TEST(WheelDrives, ASteeringAngleThatNoAxleReachesIsRefused) {
   WheelOdometry odometry(settings_of(OdometryModel::kAckermannSpeeds));
   for (int i = 0; i < 3; ++i) {
     odometry.take(frame(0, i * kStep_ns, 0.1));
-    // The first sample begins, the second is refused, the third goes on from the first.
+    // The first sample begins, the second is refused, the third continues from the first.
     EXPECT_EQ(odometry.take(frame(1, i * kStep_ns, i == 1 ? 3.1 : 0)).has_value(), i == 2) << i;
   }
   EXPECT_EQ(odometry.counters().jumps, 1u);

@@ -52,7 +52,7 @@ TEST(WheelModel, ASteeredAxleTurnsByTheTangentOfItsAngle) {
 
 // The wheels of a mecanum robot, from its motion: fl = vx - vy - k w, fr = vx + vy + k w,
 // rl = vx + vy - k w, rr = vx - vy + k w, k = (track + wheelbase) / 2.
-TEST(WheelModel, MecanumWheelsTellAllThreeDirections) {
+TEST(WheelModel, MecanumWheelsGiveAllThreeDirections) {
   WheelGeometry geometry;
   geometry.track_m = 0.4;
   geometry.wheelbase_m = 0.6;
@@ -68,7 +68,7 @@ TEST(WheelModel, MecanumWheelsTellAllThreeDirections) {
                 0.5, -0.2, -0.4);
 }
 
-TEST(WheelModel, ThreeOmniWheelsTellAllThreeDirections) {
+TEST(WheelModel, ThreeOmniWheelsGiveAllThreeDirections) {
   WheelGeometry geometry;
   geometry.omni_radius_m = 0.2;
   geometry.omni_bearing_rad = 0;  // first wheel ahead: it rolls to the left
@@ -82,7 +82,7 @@ TEST(WheelModel, ThreeOmniWheelsTellAllThreeDirections) {
   expect_motion(model.motion({0.2, 0.2, 0.2}), 0, 0, 1);
 }
 
-TEST(WheelModel, FourOmniWheelsAnywhereAroundTellWhatTheyWereGiven) {
+TEST(WheelModel, FourOmniWheelsAtAnyBearingReturnTheMotion) {
   WheelGeometry geometry;
   geometry.omni_radius_m = 0.3;
   geometry.omni_wheels = 4;

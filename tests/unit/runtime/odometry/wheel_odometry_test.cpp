@@ -84,7 +84,7 @@ TEST(WheelOdometry, CountersMayWrapAnywhere) {
   EXPECT_DOUBLE_EQ(step->motion.pose.yaw_rad, -0.05);
 }
 
-TEST(WheelOdometry, UncertaintyGrowsWithWayAndTurnAndNotWhileStanding) {
+TEST(WheelOdometry, UncertaintyGrowsWithDistanceAndTurnAndNotAtRest) {
   WheelOdometry odometry(agilex());
   odometry.take(positions(0, 0, 0));
   const auto standing = odometry.take(positions(20, 0, 0));
@@ -162,7 +162,7 @@ TEST(WheelOdometry, ASinglePositionOutOfPlaceIsRefusedWithoutLosingMotion) {
   EXPECT_EQ(odometry.counters().rebased, 0u);
 }
 
-TEST(WheelOdometry, AfterACounterResetItGoesOnFromThereAndSaysThatMotionIsMissing) {
+TEST(WheelOdometry, AfterACounterResetItContinuesAndReportsMissingMotion) {
   WheelOdometry odometry(agilex());
   for (int i = 0; i <= 10; ++i) odometry.take(positions(20 * i, 90'000 + 20 * i, 90'000 + 20 * i));
   EXPECT_FALSE(odometry.take(positions(220, 0, 0)).has_value());
@@ -170,7 +170,7 @@ TEST(WheelOdometry, AfterACounterResetItGoesOnFromThereAndSaysThatMotionIsMissin
   ASSERT_TRUE(step.has_value());
   EXPECT_EQ(step->from_ns, 200 * kWheelMs);
   EXPECT_EQ(step->to_ns, 240 * kWheelMs);
-  EXPECT_NEAR(step->motion.pose.x_m, 0.04, 1e-12);  // 20 mm seen, 20 mm taken to be as before
+  EXPECT_NEAR(step->motion.pose.x_m, 0.04, 1e-12);  // 20 mm seen, 20 mm assumed to be as before
   EXPECT_GT(std::sqrt(step->motion.covariance.xx), 0.009);  // 0.5 m/s for 20 ms
   EXPECT_EQ(odometry.counters().rebased, 1u);
   const auto next = odometry.take(positions(260, 40, 40));
@@ -190,7 +190,7 @@ TEST(WheelOdometry, AnAbruptButLastingChangeOfSpeedIsBelievedInTheEnd) {
   EXPECT_EQ(odometry.counters().rebased, 0u);
 }
 
-TEST(WheelOdometry, GoesOnWhenTheClockWasSetBack) {
+TEST(WheelOdometry, ContinuesWhenTheClockWasSetBack) {
   WheelOdometry odometry(agilex());
   odometry.take(positions(100'000, 0, 0));
   odometry.take(positions(100'020, 20, 20));
@@ -262,7 +262,7 @@ TEST(WheelOdometry, WheelSpeedsAndTwistsAreIntegrated) {
 TEST(WheelOdometry, AFullCircleEndsWhereItBegan) {
   WheelOdometry odometry(agilex());
   Pose2 pose;
-  // Radius 1 m, 2000 steps: wheels run 0.8 and 1.2 of the way.
+  // Radius 1 m, 2000 steps: wheels run 0.8 and 1.2 of the distance.
   for (int i = 0; i <= 2000; ++i) {
     const double way_mm = 2000 * kPi * i / 2000;
     const auto step =

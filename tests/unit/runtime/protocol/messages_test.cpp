@@ -52,7 +52,7 @@ TEST(Messages, CutAnywhereAreRefused) {
   MessageBuilder message;
   const auto name = message.builder().CreateString("lobby");
   Aligned whole(message.request(1, wire::CreatePin(message.builder(), 0, name)));
-  // The name was written first, so it stands last: five letters, the zero behind them, padding.
+  // The name was written first, so it comes last: five letters, the zero after them, padding.
   const std::size_t least = whole.bytes().size() - 2;
   for (std::size_t size = 0; size < whole.bytes().size(); ++size) {
     Aligned part(whole.bytes().first(size));

@@ -22,11 +22,16 @@ class FlightRecorderTest : public testing::Test {
   std::string path(const std::string& name) const { return folder / name; }
 
   std::optional<RecordedRunResult> replay(const std::string& recording) {
-    auto reader = RecordingReader::open(recording, fault);
-    if (!reader) return std::nullopt;
-    auto result = replay_recording(*reader, drive.run(), path("again.jsonl"), fault);
+    auto reader = RecordingReader::open(recording);
+    if (!reader) {
+      fault = reader.error().message;
+      return std::nullopt;
+    }
+    auto result = replay_recording(*reader, drive.run(), path("again.jsonl"));
     note = reader->note();
-    return result;
+    if (result) return std::move(*result);
+    fault = result.error().message;
+    return std::nullopt;
   }
 
   // A block that hardly compresses, so that few fill the ring.
@@ -76,17 +81,17 @@ TEST_F(FlightRecorderTest, KeepsAMapForAsLongAsACycleNeedsIt) {
   const auto has = [&](std::uint32_t number) {
     EXPECT_TRUE((*flight)->dump(path("dump.zpr")));
     for (const std::string& recording : {path("dump.zpr"), path("flight")}) {
-      const auto reader = RecordingReader::open(recording, fault);
-      EXPECT_TRUE(reader) << fault;
+      const auto reader = RecordingReader::open(recording);
+      EXPECT_TRUE(reader.ok()) << reader.error().message;
       if (!reader || reader->map(number) == nullptr) return false;
     }
     return true;
   };
-  offer(2);  // refused, say
+  offer(2);  // refused, for example
   offer(3);
   map = 3;  // in use from here on
   EXPECT_TRUE(has(2) && has(3));
-  pass(100);  // all segments begin behind both offers
+  pass(100);  // all segments begin after both offers
   EXPECT_FALSE(has(2));
   EXPECT_TRUE(has(3));
   map = 1;
@@ -112,7 +117,7 @@ TEST_F(FlightRecorderTest, DumpsAWholeRunThatReplaysToTheSameEvents) {
   }
 }
 
-TEST_F(FlightRecorderTest, DumpsWhileTheRunGoesOnUpToThatMoment) {
+TEST_F(FlightRecorderTest, DumpsARunInProgressUpToThatMoment) {
   auto flight = FlightRecorder::open(path("flight"), true, 64 * kMiB, drive.preface());
   std::uint64_t saved_at = 0;
   drive.drive(6, path("live.jsonl"), nullptr, flight->get(),
@@ -136,7 +141,7 @@ TEST_F(FlightRecorderTest, KeepsItsBytesAndForgetsTheOldest) {
   auto flight = FlightRecorder::open(path("flight"), true, limit, drive.preface());
   for (std::uint64_t cycle = 0; cycle < 300; ++cycle) {
     append(**flight, cycle);
-    // The last block of a segment may go over: 60 kB in each of 8, and the preface.
+    // The last block of a segment may exceed it: 60 kB in each of 8, and the preface.
     EXPECT_LE((*flight)->kept_bytes(), limit + 8 * 65'000 + 10'000);
   }
   // 300 blocks of 60 kB are 18 MB; of 4 MiB at least 7 of 8 segments are full.
@@ -146,8 +151,8 @@ TEST_F(FlightRecorderTest, KeepsItsBytesAndForgetsTheOldest) {
   ASSERT_TRUE(dumped.ok());
   EXPECT_GT(dumped->first_cycle, 200u);
   EXPECT_EQ(dumped->next_cycle, 300u);
-  auto reader = RecordingReader::open(path("dump.zpr"), fault);
-  ASSERT_TRUE(reader) << fault;
+  auto reader = RecordingReader::open(path("dump.zpr"));
+  ASSERT_TRUE(reader.ok()) << reader.error().message;
   ASSERT_TRUE(reader->checkpoint());
   EXPECT_EQ(reader->checkpoint()->cycle, dumped->first_cycle);
   while (reader->next() != nullptr) {
@@ -162,13 +167,13 @@ TEST_F(FlightRecorderTest, KeepsTheFilesOfTheRunBefore) {
   auto second = FlightRecorder::open(path("flight"), true, kMiB, drive.preface());
   ASSERT_TRUE(second.ok());
   EXPECT_EQ((*second)->dump(path("dump.zpr")).error().code, ErrorCode::kNotFound);
-  auto reader = RecordingReader::open(path("flight-previous"), fault);
-  ASSERT_TRUE(reader) << fault;
+  auto reader = RecordingReader::open(path("flight-previous"));
+  ASSERT_TRUE(reader.ok()) << reader.error().message;
   EXPECT_NE(reader->next(), nullptr);
 }
 
-// The beginning is gone: from the checkpoint the run goes on as from a guess.
-TEST_F(FlightRecorderTest, GoesOnFromACheckpointAsFromAGuess) {
+// The beginning is gone: from the checkpoint the run continues as from a guess.
+TEST_F(FlightRecorderTest, ContinuesFromACheckpointAsFromAGuess) {
   auto flight = FlightRecorder::open(path("flight"), true, 64 * kMiB, drive.preface());
   bool lost = false;
   drive.drive(7, path("live.jsonl"), nullptr, flight->get(),
@@ -179,8 +184,9 @@ TEST_F(FlightRecorderTest, GoesOnFromACheckpointAsFromAGuess) {
   const auto dumped = (*flight)->dump(path("dump.zpr"));
   ASSERT_TRUE(dumped.ok());
   EXPECT_EQ(dumped->first_cycle, 7001u);  // 7000 found the tap still full
-  auto reader = RecordingReader::open(path("dump.zpr"), fault);
-  ASSERT_TRUE(reader && reader->checkpoint()) << fault;
+  auto reader = RecordingReader::open(path("dump.zpr"));
+  ASSERT_TRUE(reader.ok()) << reader.error().message;
+  ASSERT_TRUE(reader->checkpoint());
   EXPECT_TRUE(reader->checkpoint()->has_pose);
   EXPECT_FALSE(reader->checkpoint()->resident.empty());
   const auto result = replay(path("dump.zpr"));
@@ -196,7 +202,7 @@ TEST_F(FlightRecorderTest, GoesOnFromACheckpointAsFromAGuess) {
   EXPECT_EQ(end_of(again), end_of(live));
 }
 
-TEST_F(FlightRecorderTest, CountsWhatItCannotWriteAndGoesOn) {
+TEST_F(FlightRecorderTest, CountsWhatItCannotWriteAndContinues) {
   auto flight = FlightRecorder::open(path("flight"), true, kMiB, drive.preface());
   append(**flight, 0);
   fs::remove_all(path("flight"));

@@ -37,24 +37,42 @@ struct Everything {
     frames[4].error = true;
     frames[4].len = 0;
     frames[4].data.fill(0);
-    corrections = {{990, 1000, {1.5, -2.25, 3.0}, 0.03, 0.04, 0.01},
-                   {-7, 2, {std::numeric_limits<double>::quiet_NaN(), 0, 0}, -0.0, 0, 1e308}};
-    loads = {{3, 7, {}, {5, 9, 12}},
-             {kNoZone,
-              0xFFFFFFFF,
-              {ErrorCode::kCancelled, std::numeric_limits<std::int64_t>::min()},
-              {}}};
+    corrections = {{.stamp_ns = 990,
+                    .received_ns = 1000,
+                    .T_map_base = {1.5, -2.25, 3.0},
+                    .sigma_x_m = 0.03,
+                    .sigma_y_m = 0.04,
+                    .sigma_yaw_rad = 0.01},
+                   {.stamp_ns = -7,
+                    .received_ns = 2,
+                    .T_map_base = {std::numeric_limits<double>::quiet_NaN(), 0, 0},
+                    .sigma_x_m = -0.0,
+                    .sigma_y_m = 0,
+                    .sigma_yaw_rad = 1e308}};
+    loads = {
+        {.zone = 3, .generation = 7, .error = {}, .slots = {.head = 5, .tail = 9, .count = 12}},
+        {.zone = kNoZone,
+         .generation = 0xFFFFFFFF,
+         .error = {ErrorCode::kCancelled, std::numeric_limits<std::int64_t>::min()},
+         .slots = {}}};
     commands.resize(2);
     commands[0].kind = Command::Kind::kRelease;
     commands[0].id = 0xFFFFFFFFFFFFFFFF;
-    commands[0].lease = {4, 5, 6};
+    commands[0].lease = {.zone = 4, .generation = 5, .epoch = 6};
     commands[1].kind = Command::Kind::kRouteHint;
     commands[1].route_length = Command::kMostRoute;
     commands[1].route.fill(9);
-    edges = {{990, LineEdge::kDock, true},
-             {std::numeric_limits<std::int64_t>::min(), 0xFFFFFFFF, false}};
+    edges = {{.stamp_ns = 990, .line = LineEdge::kDock, .active = true},
+             {.stamp_ns = std::numeric_limits<std::int64_t>::min(), .line = 0xFFFFFFFF}};
   }
-  CycleInput input() const { return {1000, frames, corrections, loads, commands, {}, edges}; }
+  CycleInput input() const {
+    return {.now_ns = 1000,
+            .frames = frames,
+            .corrections = corrections,
+            .loads = loads,
+            .commands = commands,
+            .edges = edges};
+  }
 
   std::vector<CanFrame> frames;
   std::vector<PoseCorrection> corrections;
@@ -113,7 +131,7 @@ TEST(InputRecord, GivesBackEveryInputAsItWas) {
   EXPECT_EQ(recorded(back.view()), bytes);
 }
 
-TEST(InputRecord, TakesNoMemoryToWriteAndTellsWhatDoesNotFit) {
+TEST(InputRecord, TakesNoMemoryToWriteAndReportsWhatDoesNotFit) {
   const Everything all;
   std::vector<std::byte> bytes(record_room(64));
   ByteWriter out(bytes);
@@ -138,7 +156,7 @@ TEST(InputRecord, RefusesAnInputItDoesNotKnowAndPassesOverNotes) {
 TEST(CycleBlock, StoresACycleWithoutInputInOneByte) {
   CycleBlockWriter block(10'000'000);
   TappedCycle cycle;
-  cycle.head = {7, 500, 40, {}, 0, 0, kNoZone, false};
+  cycle.head = {.cycle = 7, .now_ns = 500, .clock_offset_ns = 40, .T_map_base = {}, .map = 0};
   block.add(cycle);
   const std::size_t first = block.content().size();
   EXPECT_EQ(first, 33u);  // 4 numbers of 8 bytes, and the cycle's flags

@@ -10,7 +10,7 @@
 namespace zonepack {
 namespace {
 
-// The contents of blocks that stand one after the other.
+// The contents of blocks that follow one another.
 std::vector<std::vector<std::byte>> contents(ByteSpan blocks) {
   std::vector<std::vector<std::byte>> all;
   while (!blocks.empty()) {
@@ -24,9 +24,11 @@ std::vector<std::vector<std::byte>> contents(ByteSpan blocks) {
 }
 
 TEST(MapBlock, GivesBackMapsOfSeveralBlocksOneAfterTheOther) {
-  RecordedMap large{2, "/maps/ward", std::vector<std::byte>(1'500'000, std::byte{7})};
+  RecordedMap large{.number = 2,
+                    .folder = "/maps/ward",
+                    .manifest = std::vector<std::byte>(1'500'000, std::byte{7})};
   large.manifest.back() = std::byte{8};
-  const RecordedMap small{3, "", {std::byte{9}}};
+  const RecordedMap small{.number = 3, .folder = "", .manifest = {std::byte{9}}};
   RecordedMaps maps;
   const auto blocks = contents(write_map(large));
   EXPECT_EQ(blocks.size(), 3u);

@@ -33,9 +33,9 @@ inline std::string text_of(const std::string& path) {
   return text.str();
 }
 
-// The paper's loop through the sample building, driven as a robot would be: cycles come late, are
-// left out, readers hold zones, people pin and freeze, loads fail and are cancelled, lines change.
-// What happens when is the seed's to say.
+// The paper's loop through the sample building, driven as a robot would be: cycles come late or are
+// skipped, readers hold zones, people pin and freeze, loads fail and are cancelled, lines change.
+// The seed decides what happens when.
 class RecordedDrive {
  public:
   RecordedDrive()
@@ -62,7 +62,7 @@ class RecordedDrive {
     return preface;
   }
 
-  // After each cycle's inputs are in the tap: drains it, or does not, or looks.
+  // Called after each cycle's inputs are in the tap: may drain it or look at it.
   using AfterCycle = std::function<void(std::uint64_t cycle, InputWriter& writer)>;
 
   // Drives, and writes the events to a file. file and flight may be null. Returns the hash of the
@@ -70,13 +70,13 @@ class RecordedDrive {
   std::string drive(std::uint64_t seed, const std::string& events, RecordingFile* file,
                     FlightRecorder* flight, const AfterCycle& after_cycle = {}) {
     std::mt19937_64 random(seed);
-    std::string fault;
-    const auto map = MapModel::make(run_.catalog, terms_, fault);
-    if (!map) throw std::runtime_error(fault);
+    const auto made = MapModel::make(run_.catalog, terms_);
+    if (!made) throw std::runtime_error(made.error().message);
+    const MapModel* const map = made->get();
     Residency memory(map->needs.size(), map->limits);
-    if (!map->pin(memory, fault)) throw std::runtime_error(fault);
+    if (!map->pin(memory)) throw std::runtime_error("pins");
     SometimesFailing filler(random);
-    ModelledLoader loader(map->slots, map->work, terms_.rates, &filler);
+    ModelledLoader loader(run_.catalog, map->slots, terms_.rates, &filler);
     EventLog log([&](ZoneId zone) { return std::string_view(map->graph.name(zone)); });
     if (!log.write_to(events)) throw std::runtime_error(events);
 
@@ -91,7 +91,7 @@ class RecordedDrive {
     CanLogReader can(folder + "can0.log");
     if (!can.open()) throw std::runtime_error("can0.log");
     SimCanBus bus(&can);
-    const auto corrections = read_corrections(folder + "corrections.txt", fault);
+    const auto corrections = read_corrections(folder + "corrections.txt");
     std::size_t taken = 0;
     std::vector<CanFrame> frames(64);
     std::vector<Lease> leases;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was recorded of a run, driven again, gives the same events byte for byte.
+// A recording of a run, replayed, gives the same events byte for byte.
 #include "runtime/replay/recorded_run.hpp"
 
 #include <gmock/gmock.h>
@@ -25,11 +25,16 @@ class RecordedRunTest : public testing::Test {
   }
 
   std::optional<RecordedRunResult> replay(const std::string& recording) {
-    auto reader = RecordingReader::open(recording, fault);
-    if (!reader) return std::nullopt;
-    auto result = replay_recording(*reader, drive.run(), path("again.jsonl"), fault);
+    auto reader = RecordingReader::open(recording);
+    if (!reader) {
+      fault = reader.error().message;
+      return std::nullopt;
+    }
+    auto result = replay_recording(*reader, drive.run(), path("again.jsonl"));
     note = reader->note();
-    return result;
+    if (result) return std::move(*result);
+    fault = result.error().message;
+    return std::nullopt;
   }
 
   test_support::TemporaryFolder folder;
@@ -50,7 +55,7 @@ TEST_F(RecordedRunTest, GivesTheSameEventsByteForByte) {
     EXPECT_EQ(result->live_hash, live_hash);
     ASSERT_EQ(text_of(path("again.jsonl")), text_of(path("live.jsonl"))) << "seed " << seed;
   }
-  // The drives were worth it: every kind of trouble came.
+  // The drives cover every kind of trouble.
   for (const char* word :
        {"load_cancelled", "load_given_up", "load_failed", "evicted", "blocked", "zone_entered",
         "correction_rejected", "not_keeping_up", "docked", "undocked", "hold_begun", "hold_ended",
@@ -59,11 +64,11 @@ TEST_F(RecordedRunTest, GivesTheSameEventsByteForByte) {
   }
 }
 
-// The same inputs but one: shown to be what the events depend on.
+// The same inputs except one, which shows that the events depend on it.
 TEST_F(RecordedRunTest, DependsOnEveryInput) {
   record(1);
-  auto reader = RecordingReader::open(path("run.zpr"), fault);
-  ASSERT_TRUE(reader) << fault;
+  auto reader = RecordingReader::open(path("run.zpr"));
+  ASSERT_TRUE(reader.ok()) << reader.error().message;
   auto changed = RecordingFile::create(path("changed.zpr"), drive.preface());
   CycleBlockWriter block(drive.preface().terms.period_ns);
   std::vector<std::byte> records(kMostCycleBytes), sealed;
@@ -98,7 +103,7 @@ TEST_F(RecordedRunTest, DependsOnEveryInput) {
 
 TEST_F(RecordedRunTest, SaysAtWhichCycleItDiverges) {
   record(2);
-  auto reader = RecordingReader::open(path("run.zpr"), fault);
+  auto reader = RecordingReader::open(path("run.zpr"));
   std::uint64_t first_load = 0;
   while (const RecordedInput* input = reader->next()) {
     if (!input->loads.empty()) break;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings that somebody made up: whatever the bytes are, reading and replaying them ends in
-// order, with cycles that follow each other.
+// Made-up recordings: whatever the bytes are, reading and replaying them ends in order, with cycles
+// that follow each other.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -25,7 +25,7 @@ class RecordingMutation : public testing::Test {
 
   // The records of the first cycles, as one content.
   Bytes first_cycles(std::uint64_t count) {
-    auto reader = RecordingReader::open(path("whole.zpr"), fault);
+    auto reader = RecordingReader::open(path("whole.zpr"));
     CycleBlockWriter block(drive.preface().terms.period_ns);
     Bytes records(kMostCycleBytes);
     while (reader->cycles_read() < count) {
@@ -61,15 +61,14 @@ class RecordingMutation : public testing::Test {
     std::ofstream(path("made_up.zpr"), std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
-    auto reader = RecordingReader::open(path("made_up.zpr"), fault);
+    auto reader = RecordingReader::open(path("made_up.zpr"));
     if (!reader) return 0;
-    const auto result = replay_recording(*reader, drive.run(), "", fault);
+    const auto result = replay_recording(*reader, drive.run(), "");
     return result ? result->replay.summary.cycles : 0;
   }
 
   test_support::TemporaryFolder folder;
   testing_support::RecordedDrive drive;
-  std::string fault;
 };
 
 TEST_F(RecordingMutation, OfInputsWithRightChecksumsDoesNotLeadTheReplayAstray) {
@@ -90,7 +89,7 @@ TEST_F(RecordingMutation, OfCheckpointsDoesNotLeadTheReplayAstray) {
   checkpoint.cycle = 5000;
   checkpoint.now_ns = 1'000'000'000;
   checkpoint.has_pose = true;
-  checkpoint.resident = {{3, 2}, {4, 1}};
+  checkpoint.resident = {{.zone = 3, .generation = 2}, {.zone = 4, .generation = 1}};
   checkpoint.pinned = {7};
   checkpoint.route = {1, 2, 3};
   CycleBlockWriter block(10'000'000);
@@ -116,7 +115,7 @@ TEST_F(RecordingMutation, OfWholeFilesIsFoundByChecksums) {
   fuzz::Mutator mutator(13);
   for (int round = 0; round < 500; ++round) {
     const Bytes changed = mutator(file);
-    // The minor version and the four bytes behind it may be anything.
+    // The minor version and the four bytes after it may be anything.
     if (std::equal(file.begin() + 16, file.end(), changed.begin() + 16, changed.end())) continue;
     EXPECT_EQ(replay(changed), 0u) << "round " << round;
   }

@@ -26,18 +26,21 @@ class Replay : public testing::Test {
     CanLogReader log(kRun + "can0.log");
     EXPECT_TRUE(log.open().ok());
     ReplayInput input{catalog, log};
-    input.corrections = *read_corrections(kRun + "corrections.txt", fault);
+    input.corrections = *read_corrections(kRun + "corrections.txt");
     input.truth = &truth;
     input.cycle = testing_support::sample_robot();
     input.load_packs = false;
     input.terms.budget = 64 * kMiB;
     change(input);
-    return replay(std::move(input), fault);
+    auto result = replay(std::move(input));
+    if (result) return std::move(*result);
+    fault = result.error().message;
+    return std::nullopt;
   }
 
   std::string fault;
   Catalog catalog = testing_support::sample_catalog(kData + "/zones.geojson");
-  const TruthTrack truth = *read_truth(kRun + "base_groundtruth.txt", fault);
+  const TruthTrack truth = *read_truth(kRun + "base_groundtruth.txt");
 };
 
 TEST_F(Replay, LoadsEachZoneOfTheLoopOnceUnderAHundredSignatures) {
@@ -96,7 +99,7 @@ TEST_F(Replay, HoldsTheBudgetWithoutCorrectionsAfterTheStart) {
     const auto result = run([&](ReplayInput& input) {
       input.terms.budget.reset();
       input.corrections.resize(at_truth ? 0 : 2);
-      input.start_at_truth = at_truth;
+      if (at_truth) input.start.kind = StartChoice::Kind::kTruth;
     });
     ASSERT_TRUE(result) << fault;
     EXPECT_EQ(result->summary.budget_violations, 0u);

@@ -14,7 +14,14 @@ class BaselineTest : public testing::Test {
  protected:
   std::string problem_of(const std::string& text) {
     std::ofstream(path_, std::ios::binary) << text;
-    return read_baseline(path_, rows_).value_or("");
+    return problem_reading(path_);
+  }
+
+  std::string problem_reading(const std::string& path) {
+    auto rows = read_baseline(path);
+    if (!rows) return rows.error().message;
+    rows_ = std::move(*rows);
+    return "";
   }
 
   test_support::TemporaryFolder folder_;
@@ -40,7 +47,7 @@ TEST_F(BaselineTest, ReadsTheColumnsByName) {
 TEST_F(BaselineTest, ReadsRtabmapOnScenario1) {
   const std::string path = std::string(ZONEPACK_TEST_DATA) +
                            "/rtabmap_baseline/small_scenario1_loop_thr100_ret10_inittrue.csv";
-  EXPECT_EQ(read_baseline(path, rows_), std::nullopt);
+  EXPECT_EQ(problem_reading(path), "");
   ASSERT_EQ(rows_.size(), 221u);
   EXPECT_DOUBLE_EQ(rows_.back().loaded, 981);
   EXPECT_DOUBLE_EQ(rows_.back().unloaded, 1071);  // 1292 removed - 221 images
@@ -67,7 +74,7 @@ TEST_F(BaselineTest, RefusesAFileWithoutRows) {
 
 TEST_F(BaselineTest, NamesAFileThatIsMissing) {
   const std::string missing = path_ + ".missing";
-  EXPECT_EQ(read_baseline(missing, rows_),
+  EXPECT_EQ(problem_reading(missing),
             missing + ": cannot read the baseline: No such file or directory");
 }
 

@@ -84,5 +84,42 @@ TEST(ModelledLoader, CancelWithoutALoadDoesNothing) {
   EXPECT_FALSE(loader.poll());
 }
 
+TEST(ModelledLoader, WithoutSlotsGivesUpAtOnceAndChainsOnlyCount) {
+  Catalog catalog;
+  catalog.zones.resize(2);
+  catalog.zones[1].stored_bytes = 1000;  // at 1000 bytes/s: 1 s
+  ModelledLoader loader(catalog, {.storage = 1000, .decode = 1000});
+  loader.take_back({0, 0, 7});  // of a zone that was resident before the loader was there
+  loader.load({1, 4, 3});
+  loader.advance_to(999'999'999);
+  EXPECT_FALSE(loader.poll());
+  loader.advance_to(1'000'000'000);
+  const auto done = loader.poll();
+  ASSERT_TRUE(done);
+  EXPECT_EQ(done->error.code, ErrorCode::kOk);
+  EXPECT_EQ(done->slots.count, 3u);
+  EXPECT_EQ(loader.bytes_loaded(), 1000u);
+  loader.load({1, 5, 3});
+  loader.cancel();
+  const auto cancelled = loader.poll();
+  ASSERT_TRUE(cancelled);
+  EXPECT_EQ(cancelled->error.code, ErrorCode::kCancelled);
+  EXPECT_EQ(loader.bytes_loaded(), 1000u);
+}
+
+TEST(ModelledLoader, TakesTheWorkOfTheMapThatItIsToUse) {
+  Catalog small, large;
+  small.zones.resize(1);
+  large.zones.resize(1);
+  large.zones[0].stored_bytes = 2000;
+  ModelledLoader loader(small, {.storage = 1000, .decode = 1000});
+  loader.use(large);
+  loader.load({0, 1, 1});
+  loader.advance_to(1'999'999'999);
+  EXPECT_FALSE(loader.poll());
+  loader.advance_to(2'000'000'000);
+  EXPECT_TRUE(loader.poll());
+}
+
 }  // namespace
 }  // namespace zonepack

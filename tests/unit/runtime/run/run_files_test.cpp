@@ -21,7 +21,6 @@ class RunFiles : public testing::Test {
   void write(const std::string& text) { std::ofstream(path_, std::ios::binary) << text; }
 
   std::string path_ = testing::TempDir() + "run_file_" + std::to_string(::getpid()) + ".txt";
-  std::string fault_;
 };
 
 TEST_F(RunFiles, ReadsCorrectionsToTheNanosecond) {
@@ -30,8 +29,8 @@ TEST_F(RunFiles, ReadsCorrectionsToTheNanosecond) {
       "1718021600.000000 1718021600.141691 0.8842 10.9826 -2.60115 0.030 0.031 0.00873\r\n"
       "\n"
       "  1718021601.123456789\t1718021602 -1e-1 +2 3 nan -0.03 inf\n");
-  const auto read = read_corrections(path_, fault_);
-  ASSERT_TRUE(read.has_value()) << fault_;
+  const auto read = read_corrections(path_);
+  ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->size(), 2u);
   EXPECT_EQ((*read)[0].stamp_ns, 1'718'021'600'000'000'000);
   EXPECT_EQ((*read)[0].received_ns, 1'718'021'600'141'691'000);
@@ -45,8 +44,8 @@ TEST_F(RunFiles, ReadsCorrectionsToTheNanosecond) {
 
 TEST_F(RunFiles, CorrectionsComeInOrderOfReception) {
   write("1 5 1 0 0 1 1 1\n3 4 2 0 0 1 1 1\n2 4 3 0 0 1 1 1\n");
-  const auto read = read_corrections(path_, fault_);
-  ASSERT_TRUE(read.has_value());
+  const auto read = read_corrections(path_);
+  ASSERT_TRUE(read);
   EXPECT_EQ((*read)[0].T_map_base.x_m, 2);
   EXPECT_EQ((*read)[1].T_map_base.x_m, 3);
   EXPECT_EQ((*read)[2].T_map_base.x_m, 1);
@@ -68,19 +67,21 @@ TEST_F(RunFiles, ABadLineIsNamedWithTheExpectedColumns) {
            Case{"1 1e300 3 4 5 6 7 8\n", ":1: \"1e300\" is not a stamp"},
        }) {
     write(c.text);
-    EXPECT_FALSE(read_corrections(path_, fault_).has_value()) << c.text;
-    EXPECT_THAT(fault_, StartsWith(path_ + c.fault));
+    const auto read = read_corrections(path_);
+    ASSERT_FALSE(read) << c.text;
+    EXPECT_THAT(read.error().message, StartsWith(path_ + c.fault));
   }
-  EXPECT_FALSE(read_corrections(path_ + ".absent", fault_).has_value());
-  EXPECT_THAT(fault_, HasSubstr("No such file"));
+  const auto absent = read_corrections(path_ + ".absent");
+  ASSERT_FALSE(absent);
+  EXPECT_THAT(absent.error().message, HasSubstr("No such file"));
   write("");
-  EXPECT_TRUE(read_corrections(path_, fault_)->empty());  // a run without fixes
+  EXPECT_TRUE(read_corrections(path_)->empty());  // a run without fixes
 }
 
 TEST_F(RunFiles, StampsMayHaveAnExponent) {
   write("1.718021600500000e+09 1718021601 0 0 0 1 1 1\n");
-  const auto read = read_corrections(path_, fault_);
-  ASSERT_TRUE(read.has_value()) << fault_;
+  const auto read = read_corrections(path_);
+  ASSERT_TRUE(read) << read.error().message;
   EXPECT_NEAR(static_cast<double>((*read)[0].stamp_ns), 1'718'021'600.5e9, 500);
 }
 
@@ -90,8 +91,8 @@ TEST_F(RunFiles, TruthIsInterpolatedTheShortWayRound) {
       "# t x y z qx qy qz qw v w\n"
       "10.0 0 0 0 0 0 0.99619470 0.08715574 0.5 0.1\n"
       "10.2 1 2 0 0 0 0.99619470 -0.08715574 0.5 0.1\n");
-  const auto truth = read_truth(path_, fault_);
-  ASSERT_TRUE(truth.has_value()) << fault_;
+  const auto truth = read_truth(path_);
+  ASSERT_TRUE(truth) << truth.error().message;
   EXPECT_EQ(truth->at(9'999'999'999), std::nullopt);
   EXPECT_EQ(truth->at(10'200'000'001), std::nullopt);
   const Pose2 middle = *truth->at(10'100'000'000);
@@ -116,8 +117,9 @@ TEST_F(RunFiles, TruthThatStepsBackOrTurnsIntoNothingIsRefused) {
            Case{"# nothing\n", ": no samples"},
        }) {
     write(c.text);
-    EXPECT_FALSE(read_truth(path_, fault_).has_value()) << c.text;
-    EXPECT_THAT(fault_, StartsWith(path_ + c.fault));
+    const auto read = read_truth(path_);
+    ASSERT_FALSE(read) << c.text;
+    EXPECT_THAT(read.error().message, StartsWith(path_ + c.fault));
   }
 }
 

@@ -13,13 +13,8 @@ namespace {
 
 constexpr std::int64_t kPeriod_ns = 100'000'000;
 
-class NoEvents final : public EventSink {
- public:
-  void on_event(const Event&) noexcept override {}
-};
-
 // Three rooms (rooms.hpp) and a robot that truly drives from (2, 2) to (6, 2) in 4 s.
-class Recorder : public testing::Test {
+class Statistics : public testing::Test {
  protected:
   void cycle(ZoneId tracked, bool blocked = false) {
     CycleState state;
@@ -28,7 +23,7 @@ class Recorder : public testing::Test {
     const auto pose = truth.at(now_ns);
     state.pose.valid = pose.has_value();
     if (pose) state.pose.T_map_base = {pose->x_m, pose->y_m + 0.25, 0};
-    recorder.after_cycle(record_of(now_ns, state, memory));
+    statistics.after_cycle(record_of(now_ns, state, memory));
     now_ns += kPeriod_ns;
   }
 
@@ -39,27 +34,26 @@ class Recorder : public testing::Test {
       Event event;
       event.kind = kind;
       event.zone = zone;
-      recorder.on_event(event);
+      statistics.on_event(event);
     }
   }
 
   RunSummary summary() const {
     RunSummary s;
-    recorder.summarise(s);
+    statistics.summarise(s);
     return s;
   }
 
-  NoEvents log;
   const ZoneGraph graph = testing_support::three_rooms();
   std::vector<ZoneNeed> needs = std::vector<ZoneNeed>(3, ZoneNeed{4, 10});
   const TruthTrack truth{{{0, {2, 2, 0}}, {4'000'000'000, {6, 2, 0}}}};
   const ResidencyLimits limits{1000, 200, 100, 25, {}, 0};
   Residency memory{3, limits};
-  RunStatistics recorder{graph, needs, &truth, kPeriod_ns, limits, log};
+  RunStatistics statistics{graph, needs, &truth, kPeriod_ns, limits};
   std::int64_t now_ns = 0;
 };
 
-TEST_F(Recorder, CountsTimeWithoutTheTrueZoneOnlyAfterTheFirstZoneIsThere) {
+TEST_F(Statistics, CountsTimeWithoutTheTrueZoneOnlyAfterTheFirstZoneIsThere) {
   cycle(0);
   cycle(0);
   hold(0, needs[0]);
@@ -69,14 +63,14 @@ TEST_F(Recorder, CountsTimeWithoutTheTrueZoneOnlyAfterTheFirstZoneIsThere) {
   EXPECT_DOUBLE_EQ(summary().zone_absent_s, 0.5);
 }
 
-TEST_F(Recorder, CallsTheTrackerWrongOnlyBeyondThirtyCentimetres) {
+TEST_F(Statistics, CallsTheTrackerWrongOnlyBeyondThirtyCentimetres) {
   // At 1 m/s: 0.1 m, 0.2 m, 0.3 m are within, 0.4 m and 0.5 m inside b are not.
   now_ns = 2'100'000'000;
   for (int i = 0; i < 5; ++i) cycle(0);
   EXPECT_DOUBLE_EQ(summary().wrong_zone_s, 0.2);
 }
 
-TEST_F(Recorder, FindsALimitExceededThoughTheSumsOfResidencyDoNotShowIt) {
+TEST_F(Statistics, FindsALimitExceededThoughTheSumsOfResidencyDoNotShowIt) {
   needs[2] = {5, 16};  // what it really takes
   hold(0, {4, 10});
   cycle(0);
@@ -88,42 +82,42 @@ TEST_F(Recorder, FindsALimitExceededThoughTheSumsOfResidencyDoNotShowIt) {
   EXPECT_EQ(summary().peak_signatures, 26u);
 }
 
-TEST_F(Recorder, CountsACycleWhoseSumsDifferFromTheEvents) {
+TEST_F(Statistics, CountsACycleWhoseSumsDifferFromTheEvents) {
   needs[1] = {3, 10};
   hold(1, {4, 10});
   cycle(0);
   EXPECT_EQ(summary().budget_violations, 1u);
 }
 
-TEST_F(Recorder, MeasuresThePoseAgainstTheTruth) {
+TEST_F(Statistics, MeasuresThePoseAgainstTheTruth) {
   for (int i = 0; i < 10; ++i) cycle(0);
   ASSERT_TRUE(summary().pose_error_m);
   EXPECT_NEAR(summary().pose_error_m->p50, 0.25, 1e-6);
   EXPECT_NEAR(summary().pose_error_m->max, 0.25, 1e-6);
 }
 
-TEST_F(Recorder, CountsBlockedTime) {
+TEST_F(Statistics, CountsBlockedTime) {
   cycle(0, true);
   cycle(0, true);
   cycle(0, false);
   EXPECT_DOUBLE_EQ(summary().blocked_s, 0.2);
 }
 
-TEST_F(Recorder, KeepsNothingOfARobotsRunThatGrowsWithIt) {
+TEST_F(Statistics, KeepsNothingOfARobotsRunThatGrowsWithIt) {
   for (int i = 0; i < 5; ++i) cycle(0);
   hold(0, needs[0]);
   cycle(0);
-  const RunTrace trace = recorder.take_trace();
+  const RunTrace trace = statistics.take_trace();
   EXPECT_TRUE(trace.samples.empty());
   EXPECT_TRUE(trace.events.empty());
 }
 
-TEST_F(Recorder, KeepsEveryChangeAndTenSamplesASecondForDrawing) {
-  recorder.keep_trace();
+TEST_F(Statistics, KeepsEveryChangeAndTenSamplesASecondForDrawing) {
+  statistics.keep_trace();
   for (int i = 0; i < 5; ++i) cycle(0);
   hold(0, needs[0]);
   cycle(0);
-  const RunTrace trace = recorder.take_trace();
+  const RunTrace trace = statistics.take_trace();
   ASSERT_EQ(trace.samples.size(), 6u);
   EXPECT_EQ(trace.samples[4].charged_bytes, 200u);
   EXPECT_EQ(trace.samples[5].charged_bytes, 600u);

@@ -39,14 +39,14 @@ class Desk : public testing::Test {
     reply.id = command.id;
     reply.error.code = code;
     if (command.kind == Command::Kind::kLease && code == ErrorCode::kOk) {
-      reply.lease = {command.zone, 9, 1};
+      reply.lease = {.zone = command.zone, .generation = 9, .epoch = 1};
     }
     replies.push(reply);
     return command;
   }
 };
 
-TEST_F(Desk, TakesRepliesToWhoAskedWhateverTheirOrder) {
+TEST_F(Desk, RoutesRepliesToTheirClientsInAnyOrder) {
   ASSERT_TRUE(router.post(1, 10, command_of(Command::Kind::kPin, 2), 0).ok());
   ASSERT_TRUE(router.post(2, 20, command_of(Command::Kind::kFreeze), 0).ok());
   answer(ErrorCode::kNoRoom);
@@ -137,7 +137,7 @@ TEST_F(Desk, AClientReleasesOnlyItsOwn) {
   answer();
   settle();
   Command release = command_of(Command::Kind::kRelease);
-  release.lease = {0, 9, 1};
+  release.lease = {.zone = 0, .generation = 9, .epoch = 1};
   EXPECT_EQ(router.post(2, 20, release, 0).error().code, ErrorCode::kNotFound);
   EXPECT_TRUE(router.post(1, 11, release, 0).ok());
   EXPECT_EQ(router.leases(), 0u);
@@ -154,7 +154,7 @@ TEST_F(Desk, SaysWhichMapsZonesACommandIsOnAndHeedsNoReplyOfAnother) {
   CommandReply late;
   late.id = asked.id;
   late.map = 4;
-  late.lease = {0, 9, 1};
+  late.lease = {.zone = 0, .generation = 9, .epoch = 1};
   replies.push(late);
   settle();
   ASSERT_EQ(told.size(), 1u);

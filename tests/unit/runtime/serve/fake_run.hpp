@@ -15,8 +15,8 @@
 #include "tests/support/rooms.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// A server with a run that tests make up: the three rooms a, b, c of rooms.hpp, and a control side
-// that does what tests tell it.
+// A server with a run that tests script: the three rooms a, b, c of rooms.hpp, and a control side
+// driven by the test.
 namespace zonepack::testing_support {
 
 inline Catalog three_room_catalog() {
@@ -44,7 +44,7 @@ struct FakeRun {
   ServerPorts ports{status, events, commands, replies, poses};
   ServeSettings settings;
   std::unique_ptr<Server> server;
-  std::uint32_t map = 1;  // that events are of
+  std::uint32_t map = 1;  // that events belong to
 
   FakeRun() {
     settings.socket = folder / "s";
@@ -52,10 +52,13 @@ struct FakeRun {
   }
 
   bool open() {
-    std::string fault;
-    server = Server::open(settings, ports, catalog, graph, {}, fault);
-    if (!server) std::fprintf(stderr, "%s\n", fault.c_str());
-    return server != nullptr;
+    auto opened = Server::open(settings, ports, catalog, graph, {});
+    if (!opened) {
+      std::fprintf(stderr, "%s\n", opened.error().message.c_str());
+      return false;
+    }
+    server = std::move(*opened);
+    return true;
   }
 
   void happen(EventKind kind, ZoneId zone, std::uint32_t generation = 1) {
@@ -72,7 +75,7 @@ struct FakeRun {
   }
 };
 
-// Something that goes on in a thread until the end of the scope.
+// Something that repeats in a thread until the end of the scope.
 class Meanwhile {
  public:
   template <typename Step>
@@ -104,7 +107,7 @@ class Serving {
   std::thread thread_;
 };
 
-// Asks with one message and looks at the reply before the next.
+// Sends one request and waits for its reply before the next.
 class Client {
  public:
   explicit Client(const std::string& path) : connection_(Connection::open(path, "test", 10'000)) {}
@@ -132,7 +135,7 @@ class Client {
   const wire::Reply& lease(ZoneId zone) {
     return ask([&](auto& b) { return wire::CreateTakeLease(b, zone); });
   }
-  const wire::Status& status() {  // valid until the next question
+  const wire::Status& status() {  // valid until the next request
     return *ask([](auto& b) { return wire::CreateAskStatus(b); }).body_as_Status();
   }
 
@@ -186,7 +189,7 @@ inline std::size_t open_descriptors() {
       std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {}));
 }
 
-// True as soon as `holds` is; false when it never is. Long, for hosts that stall.
+// True as soon as `holds` is; false when it never is. The limit is long, for hosts that stall.
 inline bool soon(const std::function<bool()>& holds) {
   for (int i = 0; i < 5000; ++i) {
     if (holds()) return true;

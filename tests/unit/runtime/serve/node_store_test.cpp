@@ -41,7 +41,7 @@ void write_map(const std::filesystem::path& folder, const Nodes& nodes) {
   ASSERT_TRUE(write_file_atomically(folder / std::string(kManifestName), text).ok());
 }
 
-// `count` nodes at random places of the zone, some outside of it, as orphans are.
+// `count` nodes at random places of the zone, some outside it, as orphans are.
 std::vector<fb::Node> scattered(std::size_t zone, std::size_t count, std::mt19937& random) {
   std::vector<fb::Node> nodes;
   for (std::size_t i = 0; i < count; ++i) {
@@ -156,7 +156,7 @@ TEST_F(Store, AFileChangedInPlaceIsNeverServed) {
   EXPECT_EQ(store->read(0, 512).error().code, ErrorCode::kBadChecksum);
 }
 
-TEST_F(Store, AnotherVersionOfTheMapIsRefusedAndAReplacedOneGoesOn) {
+TEST_F(Store, AnotherVersionOfTheMapIsRefusedAndAReplacedOneKeepsWorking) {
   write_map(folder.path(), {scattered(0, 10, random)});
   const auto catalog = Catalog::open(folder.path().string(), kCoreOnly);
   auto store = NodeStore::open(*catalog);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What clients do or leave undone, and the control side beside them: it goes on at its steady rate,
-// and every push of its finds room.
+// Whatever clients do or fail to do, the control side keeps its steady rate, and each of its pushes
+// finds room.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -16,8 +16,8 @@ using testing_support::Serving;
 using testing_support::soon;
 using wire::Fault;
 
-// The control side: in each step it takes commands, replies, tells an event and its status, as the
-// control thread does, and counts what found no room.
+// The control side: in each step it takes commands, replies, and publishes an event and its status,
+// as the control thread does, and counts what found no room.
 class Control {
  public:
   explicit Control(FakeRun& run) : run_(run), thread_([this] { go(); }) {}
@@ -44,7 +44,8 @@ class Control {
     for (std::size_t i = 0; i < Cycle::kMostCommands && run_.commands.pop(command); ++i) {
       CommandReply reply;
       reply.id = command.id;
-      if (command.kind == Command::Kind::kLease) reply.lease = {command.zone, 1, 1};
+      if (command.kind == Command::Kind::kLease)
+        reply.lease = {.zone = command.zone, .generation = 1, .epoch = 1};
       if (!run_.replies.push(reply)) ++without_room_;
     }
     PoseCorrection pose;
@@ -68,7 +69,7 @@ class Overload : public testing::Test {
  protected:
   FakeRun run;
 
-  // The control side has stepped on, with room for all it had to say, and a new client is served.
+  // The control side has kept stepping, with room for all its messages, and a new client is served.
   void expect_untouched(Control& control) {
     const std::uint64_t before = control.steps();
     EXPECT_TRUE(soon([&] { return control.steps() > before + 50; }));
@@ -124,8 +125,8 @@ TEST_F(Overload, AClientThatNeverReadsIsNotReadFromAndLosesItsEvents) {
   MessageBuilder subscribe;
   ASSERT_TRUE(
       deaf->send(subscribe.request(2, wire::CreateSubscribe(subscribe.builder(), true, 100))).ok());
-  // Zones of the map, again and again, until nobody takes the question any more: 32 KiB of answers
-  // in the kernel, and one kept.
+  // Asks for the map's zones again and again until no request is accepted: 32 KiB of answers in the
+  // kernel, and one kept.
   std::uint64_t id = 3;
   ASSERT_TRUE(soon([&] {
     MessageBuilder message;
@@ -161,7 +162,7 @@ TEST_F(Overload, AThousandConnectsAreServedOrRefusedAndLeaveNothing) {
   EXPECT_TRUE(soon([&] { return testing_support::open_descriptors() == open_before; }));
 }
 
-TEST_F(Overload, MoreClientsThanThereIsRoomForAreToldSo) {
+TEST_F(Overload, MoreClientsThanThereIsRoomForAreRefused) {
   run.settings.clients = 2;
   ASSERT_TRUE(run.open());
   const Serving serving(run);
@@ -177,7 +178,7 @@ TEST_F(Overload, MoreClientsThanThereIsRoomForAreToldSo) {
 }
 
 // Turns by hand: nothing depends on when threads run.
-TEST_F(Overload, ASlowSubscriberIsToldHowManyEventsItLostAndIsDroppedInTheEnd) {
+TEST_F(Overload, ASlowSubscriberLearnsHowManyEventsItLostAndIsDroppedInTheEnd) {
   ASSERT_TRUE(run.open());
   auto slow = LocalSocket::connect(run.settings.socket);
   MessageBuilder first, second;
@@ -213,14 +214,14 @@ TEST_F(Overload, ASlowSubscriberIsToldHowManyEventsItLostAndIsDroppedInTheEnd) {
   read_all();
   EXPECT_EQ(said, lost);
   EXPECT_EQ(delivered, told + 10 - lost);
-  // And now never again.
+  // And from here on never again.
   for (int i = 0; i < 1000 && run.server->counters().clients > 0; ++i) tell(10);
   EXPECT_EQ(run.server->counters().clients, 0u);
   EXPECT_EQ(run.server->counters().clients_dropped, 1u);
 }
 
 // Requests of all kinds, changed at random: the server answers what it can, and lives.
-TEST_F(Overload, MadeUpMessagesHarmNobody) {
+TEST_F(Overload, MadeUpMessagesDoNoHarm) {
   run.settings.requests_per_s = 1'000'000;
   ASSERT_TRUE(run.open());
   Control control(run);
@@ -250,7 +251,7 @@ TEST_F(Overload, MadeUpMessagesHarmNobody) {
         std::this_thread::yield();
       }
     }
-    // Still answered, behind faults that belong to no request.
+    // Still answered, after faults that belong to no request.
     EXPECT_TRUE(soon([&] {
       const auto ask = [](auto& b) { return wire::CreateAskStatus(b); };
       return client.ask(ask).body_as_Status() != nullptr;

@@ -106,7 +106,7 @@ TEST_F(Served, KnowsZonesByTheEventsOfTheRun) {
   EXPECT_EQ(client.status().zones_filling(), 1u);
 }
 
-TEST_F(Served, TellsWhatChangedSinceAPointThatItNamed) {
+TEST_F(Served, ReportsWhatChangedSinceAGivenPoint) {
   ASSERT_TRUE(run.open());
   run.load(0);
   run.load(1);
@@ -153,7 +153,8 @@ TEST_F(Served, ReleasesTheLeasesOfAClientThatIsGone) {
   std::atomic<int> released{0};
   const Meanwhile controlling(control([&](const Command& command) {
     CommandReply reply;
-    if (command.kind == Command::Kind::kLease) reply.lease = {command.zone, 5, 1};
+    if (command.kind == Command::Kind::kLease)
+      reply.lease = {.zone = command.zone, .generation = 5, .epoch = 1};
     if (command.kind == Command::Kind::kRelease && command.lease.generation == 5) ++released;
     return reply;
   }));
@@ -223,7 +224,7 @@ TEST_F(Served, PlansThroughZonesThatAreNotLoadedAndHintsWhenAsked) {
   ASSERT_TRUE(run.open());
   const Serving serving(run);
   Client client(run.settings.socket);
-  // From where the robot stands: 3 m to the first door, 4 m to the second.
+  // From the robot's position: 3 m to the first door, 4 m to the second.
   const auto& reply =
       client.ask([](auto& b) { return wire::CreateAskRoute(b, kNoZone, 0, 2, 0, true); });
   ASSERT_NE(reply.body_as_Route(), nullptr);
@@ -277,7 +278,7 @@ TEST_F(Served, TheLookingSocketIsForLookingOnly) {
             Fault::Denied);
 }
 
-TEST_F(Served, AnotherMapIsToldAndOldZoneNumbersAreRefused) {
+TEST_F(Served, AChangeOfMapIsAnnouncedAndOldZoneNumbersAreRefused) {
   ASSERT_TRUE(run.open());
   Catalog other = testing_support::three_room_catalog();
   other.zones[0].name = "A";
@@ -306,7 +307,7 @@ TEST_F(Served, AnotherMapIsToldAndOldZoneNumbersAreRefused) {
   EXPECT_EQ(ask(told).fault(), Fault::None);
 }
 
-TEST_F(Served, AnotherMapIsServedWhenTheEventThatToldOfItWasLost) {
+TEST_F(Served, AnotherMapIsServedEvenWhenItsEventWasLost) {
   ASSERT_TRUE(run.open());
   Catalog other = testing_support::three_room_catalog();
   other.zones[0].name = "A";
@@ -316,7 +317,7 @@ TEST_F(Served, AnotherMapIsServedWhenTheEventThatToldOfItWasLost) {
   const auto ask = [&]() -> const wire::Reply& {
     return client.ask([](auto& b) { return wire::CreateAskZone(b, 0); });
   };
-  run.map = 7;  // of no map that it was told of: passed over
+  run.map = 7;  // of a map that it does not know: skipped
   run.load(0, 3);
   run.map = 2;
   run.load(0, 9);
@@ -336,21 +337,23 @@ TEST_F(Served, AMapThatIsNotUsedAnyMoreIsForgottenWithoutAnyEvent) {
   EXPECT_EQ(&run.server->map().catalog, &other);
 }
 
-TEST_F(Served, OpeningSaysWhatStandsInTheWay) {
+TEST_F(Served, OpeningSaysWhatPreventsIt) {
   ASSERT_TRUE(run.open());
-  std::string fault;
-  EXPECT_EQ(Server::open(run.settings, run.ports, run.catalog, run.graph, {}, fault), nullptr);
-  EXPECT_NE(fault.find(run.settings.socket), std::string::npos);
-  EXPECT_NE(fault.find("another zoned listens there"), std::string::npos);
+  const auto fault_of = [&](const ServeSettings& settings) {
+    const auto opened = Server::open(settings, run.ports, run.catalog, run.graph, {});
+    EXPECT_FALSE(opened.ok());
+    return opened.error().message;
+  };
+  const std::string taken = fault_of(run.settings);
+  EXPECT_NE(taken.find(run.settings.socket), std::string::npos);
+  EXPECT_NE(taken.find("another zoned listens there"), std::string::npos);
   ServeSettings settings;
   settings.socket = run.folder / "t";
   settings.mode = "0x1";
-  EXPECT_EQ(Server::open(settings, run.ports, run.catalog, run.graph, {}, fault), nullptr);
-  EXPECT_NE(fault.find("expected octal digits"), std::string::npos);
+  EXPECT_NE(fault_of(settings).find("expected octal digits"), std::string::npos);
   settings.socket = run.folder / "no/such/folder";
   settings.mode = "0660";
-  EXPECT_EQ(Server::open(settings, run.ports, run.catalog, run.graph, {}, fault), nullptr);
-  EXPECT_NE(fault.find("No such file or directory"), std::string::npos);
+  EXPECT_NE(fault_of(settings).find("No such file or directory"), std::string::npos);
 }
 
 }  // namespace

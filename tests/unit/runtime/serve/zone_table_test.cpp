@@ -25,7 +25,7 @@ TEST(ZoneTable, FollowsAZoneThroughItsLife) {
   table.take(event_of(EventKind::kLoadCancelled, 1, 1));
   EXPECT_EQ(table[1].state, ZoneState::kCancelling);
   EXPECT_EQ(table.totals().filling, 1u);
-  table.take(event_of(EventKind::kLoadDone, 1, 1));  // finished all the same
+  table.take(event_of(EventKind::kLoadDone, 1, 1));  // finished anyway
   EXPECT_TRUE(table[1].resident());
   EXPECT_EQ(table.totals().filling, 0u);
   EXPECT_EQ(table.totals().resident, 1u);
@@ -75,8 +75,8 @@ TEST(ZoneTable, PinsAndLeasesAreWhatTheServerNotes) {
   EXPECT_EQ(table[0].leases, 1u);
 }
 
-// A client that catches up from wherever it is knows what the table knows.
-TEST(ZoneTable, WhoCatchesUpFromAnyPointEndsWithTheSameZones) {
+// A client that catches up from any point knows what the table knows.
+TEST(ZoneTable, CatchingUpFromAnyPointEndsWithTheSameZones) {
   constexpr ZoneId kZones = 20;
   ZoneTable table(kZones);
   std::mt19937 random(3);

@@ -17,20 +17,19 @@ using testing::SizeIs;
 
 LoadedDbc parse(const std::string& text) { return parse_dbc(text, "a.dbc"); }
 
-// A message of 8 bytes, id 100, with what is given as its signals.
+// A message of 8 bytes, id 100, with the given signals.
 std::string message(const std::string& signals) { return "BO_ 100 M: 8 N\n" + signals + "\n"; }
 
 DbcFound find(const LoadedDbc& loaded, const std::string& name) {
-  std::string fault;
-  const auto found = loaded.file.find(name, fault);
-  EXPECT_TRUE(found.has_value()) << fault;
-  return found.value_or(DbcFound{});
+  const auto found = loaded.file.find(name);
+  EXPECT_TRUE(found.ok()) << found.error().message;
+  return found ? *found : DbcFound{};
 }
 
 std::string fault_of(const LoadedDbc& loaded, const std::string& name) {
-  std::string fault;
-  EXPECT_FALSE(loaded.file.find(name, fault).has_value()) << name;
-  return fault;
+  const auto found = loaded.file.find(name);
+  EXPECT_FALSE(found.ok()) << name;
+  return found.error().message;
 }
 
 CanFrame frame(std::uint32_t id, std::initializer_list<int> bytes) {
@@ -215,7 +214,7 @@ TEST(DbcFile, SymbolsMayStandOnOneLineOrBeFollowedByNothing) {
   EXPECT_THAT(parse("").faults, IsEmpty());
 }
 
-TEST(DbcFile, FaultsTellLineColumnAndWhatWasExpected) {
+TEST(DbcFile, FaultsNameLineColumnAndWhatWasExpected) {
   struct Case {
     std::string text;
     const char* fault;
@@ -248,7 +247,7 @@ TEST(DbcFile, FaultsTellLineColumnAndWhatWasExpected) {
   }
 }
 
-TEST(DbcFile, GoesOnAfterAFaultAndStopsAtTwenty) {
+TEST(DbcFile, ContinuesAfterAFaultAndStopsAtTwenty) {
   EXPECT_THAT(parse("BO_ x\nBO_ 1 A: 8 N\n SG_ S\n SG_ T : 0|8@1+ (1,0) [0|0] \"\" N\n"
                     "BO_ y\n")
                   .faults,
@@ -258,7 +257,7 @@ TEST(DbcFile, GoesOnAfterAFaultAndStopsAtTwenty) {
   EXPECT_THAT(parse(many).faults, SizeIs(20));
 }
 
-TEST(DbcFile, ANameThatIsNotThereIsToldWithTheNearest) {
+TEST(DbcFile, AnUnknownNameIsReportedWithTheNearest) {
   const LoadedDbc loaded = load_dbc(ZONEPACK_SOURCE_DIR "/config/agilex.dbc");
   EXPECT_THAT(
       fault_of(loaded, "Odometri.LeftWheel"),

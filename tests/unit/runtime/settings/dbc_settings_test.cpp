@@ -65,7 +65,7 @@ TEST(DbcSettings, TheCycleTimeOfTheFramesSetsTheTimeout) {
   const LoadedSettings slow = with_dbc("cycle:\n  period_hz: 20\n");
   EXPECT_THAT(slow.faults, IsEmpty());
   EXPECT_EQ(slow.settings.odometry.wheels.timeout_s, 0.1);
-  // Signals that are written out tell no cycle time.
+  // Signals of can.signals have no cycle time.
   EXPECT_EQ(load_settings(kConfig + "agilex.yaml").settings.odometry.wheels.timeout_s, 0.3);
 }
 

@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// Signals a to d in frames 1 to 4, and what is given as the section odometry.
+// Signals a to d in frames 1 to 4, and the given section odometry.
 LoadedSettings with(const std::string& odometry) {
   std::string text = "can:\n  signals:\n";
   for (int i = 1; i <= 4; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ready-made robots of config/: a candump log made byte by byte as the maker's manual tells,
-// read with the robot's settings, ends where the drive that it was made from ends.
+// The ready-made robots of config/: a candump log, built byte by byte as the vendor's manual
+// describes and read with the robot's settings, ends where the drive it was made from ends.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 using testing::IsEmpty;
 
-// A drive of 40 s: left and right ways in metres, and where it leads.
+// A drive of 40 s: left and right distances in metres, and where it leads.
 struct Wheels {
   double left_m = 0;
   double right_m = 0;
@@ -31,7 +31,7 @@ Wheels speeds_at(double t_s) {
   return {ramp * (0.6 + 0.2 * std::sin(0.9 * t_s)), ramp * (0.6 - 0.25 * std::sin(0.5 * t_s))};
 }
 
-// A log that is written as candump -l does.
+// A log as candump -l writes it.
 class Log {
  public:
   explicit Log(const std::string& name) : path_(testing::TempDir() + name), file_(path_) {}
@@ -68,20 +68,20 @@ std::uint64_t float_bits(double value) {
   return std::bit_cast<std::uint32_t>(static_cast<float>(value));
 }
 
-// Writes the frames of one moment: ways so far and present speeds.
+// Writes the frames of one moment: distances so far and present speeds.
 using Write = std::function<void(Log&, double t_s, const Wheels& ways, const Wheels& speeds)>;
 
-struct Outcome {
+struct DriveEnd {
   Pose2 pose, truth;
   WheelOdometryCounters counters;
   double timeout_s = 0;
   double error_m() const { return std::hypot(pose.x_m - truth.x_m, pose.y_m - truth.y_m); }
 };
 
-Outcome drive(const LoadedSettings& loaded, const std::string& name, double period_s,
-              const Write& write) {
+DriveEnd drive(const LoadedSettings& loaded, const std::string& name, double period_s,
+               const Write& write) {
   EXPECT_THAT(loaded.faults, IsEmpty());
-  Outcome outcome;
+  DriveEnd outcome;
   const WheelOdometrySettings& settings = loaded.settings.odometry.wheels;
   outcome.timeout_s = settings.timeout_s;
   Log made(name + ".log");
@@ -130,7 +130,7 @@ LoadedSettings profile_with(const std::string& name,
   return parse_settings(text, path);
 }
 
-void expect_arrival(const Outcome& outcome, double most_m) {
+void expect_arrival(const DriveEnd& outcome, double most_m) {
   EXPECT_GT(std::hypot(outcome.truth.x_m, outcome.truth.y_m), 2);
   EXPECT_LT(outcome.error_m(), most_m);
   EXPECT_LT(std::abs(wrap_angle(outcome.pose.yaw_rad - outcome.truth.yaw_rad)), most_m);
@@ -166,7 +166,7 @@ TEST(Profiles, ODrivePositionsAndSpeeds) {
       log.frame(t + 0.0003 * node, node * 32 + 9, encoder, false);
     }
   };
-  const Outcome positions = drive(profile("odrive"), "odrive", 0.01, write);
+  const DriveEnd positions = drive(profile("odrive"), "odrive", 0.01, write);
   expect_arrival(positions, 0.005);
   EXPECT_DOUBLE_EQ(positions.timeout_s, 0.03);
   expect_arrival(
@@ -194,7 +194,7 @@ TEST(Profiles, VescTachometersAndErpm) {
     }
   };
   // A step is 5.8 mm.
-  const Outcome positions = drive(profile("vesc"), "vesc", 0.02, write);
+  const DriveEnd positions = drive(profile("vesc"), "vesc", 0.02, write);
   expect_arrival(positions, 0.05);
   EXPECT_DOUBLE_EQ(positions.timeout_s, 0.06);
   expect_arrival(
@@ -226,19 +226,19 @@ Write canopen_frames(const std::function<bool(double)>& alive) {
 }
 
 TEST(Profiles, CanOpen402PositionsOnSync) {
-  const Outcome outcome =
+  const DriveEnd outcome =
       drive(profile("canopen_402"), "canopen", 0.02, canopen_frames([](double) { return true; }));
   expect_arrival(outcome, 0.005);
   EXPECT_EQ(outcome.counters.unwatched, 0u);
 }
 
 TEST(Profiles, CanOpen402DataIsRefusedWhileAHeartbeatIsMissing) {
-  const Outcome outcome = drive(profile("canopen_402"), "canopen_lost", 0.02,
-                                canopen_frames([](double t) { return t < 10 || t >= 12; }));
+  const DriveEnd outcome = drive(profile("canopen_402"), "canopen_lost", 0.02,
+                                 canopen_frames([](double t) { return t < 10 || t >= 12; }));
   // The last heartbeat came at 9.9 s; from 10.2 s to 12 s nothing was believed: 2 * 90 frames.
   EXPECT_NEAR(static_cast<double>(outcome.counters.unwatched), 180, 4);
   EXPECT_EQ(outcome.counters.gaps, 1u);
-  // Positions know the way all the same; only its curve is lost.
+  // Positions still know the distance; only its curve is lost.
   EXPECT_LT(outcome.error_m(), 0.15);
   EXPECT_LT(std::abs(wrap_angle(outcome.pose.yaw_rad - outcome.truth.yaw_rad)), 0.005);
 }
@@ -252,7 +252,7 @@ TEST(Profiles, RoboteqCountersInUserVariables) {
     put_little(tpdo1, counts(ways.right_m * ticks_per_m), 4);
     log.frame(t + 0.001, 0x181, tpdo1, false);
   };
-  const Outcome outcome = drive(profile("roboteq"), "roboteq", 0.02, write);
+  const DriveEnd outcome = drive(profile("roboteq"), "roboteq", 0.02, write);
   expect_arrival(outcome, 0.005);
   EXPECT_DOUBLE_EQ(outcome.timeout_s, 0.06);
 }

@@ -51,7 +51,7 @@ TEST(Settings, TheExampleNeedsNoEdit) {
   EXPECT_EQ(loaded.settings.map.path, "");
 }
 
-// Every key of a table stands in the example, and its value there is the default.
+// Every key of a table is in the example, and its value there is the default.
 template <typename Section>
 void expect_defaults(const char* name, const Fields<Section>& fields, const Section& loaded) {
   const std::string text = text_of(kExample);
@@ -109,7 +109,7 @@ TEST(Settings, AnUnknownKeyIsNamedWithItsLineAndTheNearestKnownOne) {
               testing::Contains(AllOf(HasSubstr("memry: unknown key"), HasSubstr("\"memory\""))));
 }
 
-TEST(Settings, AWrongTypeOrRangeTellsWhatIsAllowed) {
+TEST(Settings, AWrongTypeOrRangeSaysWhatIsAllowed) {
   struct Case {
     const char *from, *to, *fault;
   };

@@ -134,7 +134,7 @@ class StateSaverTest : public testing::Test {
                    [this](std::string text) { told.push_back(std::move(text)); }};
 };
 
-TEST_F(StateSaverTest, SavesTheMapThatTheZoneIsOfAndWaitsWhereThatIsGone) {
+TEST_F(StateSaverTest, SavesTheMapOfTheZoneAndWaitsWhenThatIsGone) {
   glimpse.pose.valid = true;
   pass(1);
   EXPECT_EQ(saved()->map_version[0], 1);
@@ -169,7 +169,7 @@ TEST_F(StateSaverTest, SavesOnAChangeOfZoneAtTheEndAndElseOnceAMinute) {
   EXPECT_EQ(saved()->runs, 3u);
 }
 
-TEST_F(StateSaverTest, CountsWhatCannotBeSavedTellsItOnceAndGoesOn) {
+TEST_F(StateSaverTest, CountsWhatCannotBeSavedReportsItOnceAndContinues) {
   fs::remove_all(folder / "state");
   for (int i = 0; i < 5; ++i) pass(60);
   EXPECT_EQ(saver.saved(), 0u);

@@ -39,7 +39,7 @@ TEST(BoxTree, VisitsEveryBoxWithinTheRadius) {
     const double radius = i % 2 == 0 ? 0 : size(random);
     const auto found = near(tree, point, radius);
     for (std::uint32_t b = 0; b < boxes.size(); ++b) {
-      // Boxes of the same leaf may be reported too: whoever asks looks at the polygon anyway.
+      // Boxes of the same leaf may be reported too: the caller checks the polygon anyway.
       if (distance_to(boxes[b], point) <= radius) {
         EXPECT_TRUE(std::binary_search(found.begin(), found.end(), b)) << b;
       }

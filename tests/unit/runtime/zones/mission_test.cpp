@@ -28,7 +28,7 @@ struct Variation {
   std::uint32_t seed = 1;
 };
 
-struct Outcome {
+struct MissionEnd {
   int entries = 0;
   int late = 0;        // entered before it was wanted for as long as loading takes
   int needless = 0;    // wanted, never entered
@@ -72,7 +72,7 @@ std::vector<TrueSample> varied(std::vector<TrueSample> path, const Variation& va
   return path;
 }
 
-Outcome drive(const Variation& variation) {
+MissionEnd drive(const Variation& variation) {
   const std::string data = ZONEPACK_TEST_DATA;
   Building building = testing_support::read_building(data + "/zones.geojson");
   if (variation.mirrored) building = mirrored(std::move(building));
@@ -85,7 +85,7 @@ Outcome drive(const Variation& variation) {
   std::mt19937 random(variation.seed);
   std::normal_distribution<double> normal;
 
-  Outcome outcome;
+  MissionEnd outcome;
   double error_x = 0, error_y = 0;
   ZoneId true_zone = kNoZone;
   std::map<ZoneId, double> wanted_since;
@@ -147,7 +147,7 @@ TEST(Mission, PreloadsEveryZoneOfTheLoopInTimeAndNoOther) {
         for (const double noise_m : {0.01, 0.04, 0.08}) {
           SCOPED_TRACE(testing::Message() << "reversed " << reversed << " mirrored " << mirror_image
                                           << " pace " << pace << " noise " << noise_m);
-          const Outcome outcome = drive({reversed, mirror_image, pace, noise_m, 5});
+          const MissionEnd outcome = drive({reversed, mirror_image, pace, noise_m, 5});
           EXPECT_EQ(outcome.entries, 5);  // L1 H1 C2 H2 C3 L1
           EXPECT_EQ(outcome.late, 0);
           EXPECT_EQ(outcome.needless, 0);

@@ -48,7 +48,7 @@ TEST_F(PreloadTest, ApproachesTheZoneBehindADoorWithinTheHorizon) {
   EXPECT_EQ(approached(), Zones{});
   at(pose_at(3.55, 2), 0, 1.0);  // 0.45 m
   EXPECT_EQ(approached(), Zones{1});
-  // Steps are 5 cm and more: the entry is told to within one.
+  // Steps are 5 cm and more: the entry is known to within one.
   EXPECT_NEAR(preload.approaches()[0].entry_s, 0.45, 0.06);
 }
 
@@ -64,7 +64,7 @@ TEST_F(PreloadTest, LooksFartherAheadForAZoneThatTakesLonger) {
 
 TEST_F(PreloadTest, DoesNotApproachADoorThatIsMerelyPassed) {
   for (double y = 0.2; y < 3.8; y += 0.02) {
-    at(pose_at(3.65, y, kPi / 2), 0, 1.0);  // 35 cm beside the wall
+    at(pose_at(3.65, y, kPi / 2), 0, 1.0);  // 35 cm from the wall
     EXPECT_EQ(approached(), Zones{}) << y;
   }
 }

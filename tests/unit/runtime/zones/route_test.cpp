@@ -44,7 +44,7 @@ TEST(Route, ToAZoneThatNothingLeadsToIsNotFound) {
   EXPECT_EQ(plan_route(graph, 0, 2).error().code, ErrorCode::kNotFound);
 }
 
-// A ring of four rooms around (4, 4): from a to d both ways are equally long, by b or by c.
+// A ring of four rooms around (4, 4): from a to d both routes are equally long, through b or c.
 TEST(Route, OfTwoEqualWaysTakesTheOneThroughTheLowerZone) {
   const GraphPortal portals[] = {{0, 2, {{1, 4}, {3, 4}}},
                                  {2, 3, {{4, 5}, {4, 7}}},
@@ -85,7 +85,7 @@ TEST(Route, GivesUpAtItsBoundAndNotBefore) {
   EXPECT_EQ(near->length_m, 29 * 4.0);
 }
 
-// All pairs of the sample building, against a shortest way found by relaxing every edge often
+// All pairs of the sample building, against a shortest route found by relaxing every edge often
 // enough.
 TEST(Route, IsAsShortAsBellmanAndFordFindIt) {
   const auto building =

@@ -21,7 +21,9 @@ class Markers : public testing::Test {
 
   const ZoneGraph graph = testing_support::three_rooms();
   const std::vector<ZoneMarkerSettings> settings = {
-      {"door", "a", "b", 0.5}, {"beacon", "c", "", 0.5}, {"gone", "a", "x", 0.5}};
+      {.name = "door", .zone = "a", .other = "b", .reach_m = 0.5},
+      {.name = "beacon", .zone = "c", .other = "", .reach_m = 0.5},
+      {.name = "gone", .zone = "a", .other = "x", .reach_m = 0.5}};
   const ZoneMarkers markers{graph, settings};
 };
 
@@ -71,12 +73,14 @@ TEST_F(Markers, WithoutAPoseOrAZoneOfTheMapNothingIsBelieved) {
 
 TEST_F(Markers, AreRefusedByNameWhereTheMapHasNoSuchZoneOrDoor) {
   const auto fault = [&](std::vector<ZoneMarkerSettings> wrong) {
-    return ZoneMarkers::fault_of(graph, wrong).value_or("none");
+    const auto fit = ZoneMarkers::check(graph, wrong);
+    return fit ? "none" : fit.error().message;
   };
   EXPECT_EQ(fault({settings[0], settings[1]}), "none");
   EXPECT_EQ(fault({settings[2]}), "gpio.zone_markers.gone.zones: the map has no zone x");
-  EXPECT_EQ(fault({{"lab", "z", "", 1}}), "gpio.zone_markers.lab.zones: the map has no zone z");
-  EXPECT_EQ(fault({{"wall", "a", "c", 1}}).substr(0, 65),
+  EXPECT_EQ(fault({{.name = "lab", .zone = "z", .other = ""}}),
+            "gpio.zone_markers.lab.zones: the map has no zone z");
+  EXPECT_EQ(fault({{.name = "wall", .zone = "a", .other = "c"}}).substr(0, 65),
             "gpio.zone_markers.wall.zones: no portal leads from a to c; name t");
 }
 

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -33,13 +36,19 @@ class CtlText : public testing::Test {
     live.state.zone_resident = true;
     live.budget = 8 * kMiB;
     live.charged = 2 * kMiB;
-    live.cycle = {1000, 3'000, 9'000, 20'000, 40'000, 120'000};
+    live.cycle = {
+        .count = 1000, .p50 = 3'000, .p99 = 9'000, .p999 = 20'000, .p9999 = 40'000, .max = 120'000};
     live.realtime = live.memory_locked = true;
     counters.not_keeping_up = 3;
   }
 
   const wire::Status& status() {
-    const ServedMap map{run.catalog, run.graph, 1, 0, ZoneTable(3), std::nullopt};
+    const ServedMap map{.catalog = run.catalog,
+                        .graph = run.graph,
+                        .serial = 1,
+                        .epoch = 0,
+                        .zones = ZoneTable(3),
+                        .nodes = std::nullopt};
     message.builder().Clear();
     const Message bytes = answer_status(message, 1, map, live, counters);
     return *flatbuffers::GetRoot<wire::Reply>(bytes.data())->body_as_Status();
@@ -53,7 +62,7 @@ class CtlText : public testing::Test {
   }
 };
 
-TEST_F(CtlText, TellsOfABusThatIsDownAndCountsItsTroubles) {
+TEST_F(CtlText, ReportsABusThatIsDownAndCountsItsErrors) {
   EXPECT_EQ(complaints(status()), std::vector<std::string>{});
   live.bus = {.link = CanLink::kUp,
               .state = CanBusState::kOff,
@@ -74,7 +83,7 @@ TEST_F(CtlText, TellsOfABusThatIsDownAndCountsItsTroubles) {
   EXPECT_EQ(complaints(status()).size(), 1u);
 }
 
-// The rules that `promtool check metrics` holds text to.
+// The rules that `promtool check metrics` applies.
 TEST_F(CtlText, MetricsAreAsPrometheusWantsThem) {
   const std::regex name("zoned_[a-z0-9_]+");
   const std::regex sample("([a-z0-9_]+)(\\{[a-z]+=\"[^\"]*\"\\})? (-?[0-9.e+-]+)");
@@ -121,6 +130,30 @@ TEST_F(CtlText, JsonHoldsTheSameNumbers) {
   EXPECT_TRUE(nlohmann::json::parse(status_json(status()))["pose"].is_null());
 }
 
+// Counters of the control thread, each set to a number of its own.
+template <typename Counters>
+Counters numbered(std::uint64_t first) {
+  std::array<std::uint64_t, sizeof(Counters) / sizeof(std::uint64_t)> numbers;
+  std::iota(numbers.begin(), numbers.end(), first);
+  return std::bit_cast<Counters>(numbers);
+}
+
+TEST_F(CtlText, EveryCounterOfOverloadAndMemoryIsShown) {
+  live.overload = numbered<OverloadCounters>(7'000'000);
+  live.residency = numbered<ResidencyCounters>(8'000'000);
+  const auto json = nlohmann::json::parse(status_json(status()));
+  std::multiset<std::uint64_t> shown;
+  for (const auto& value : json) {
+    if (value.is_number_unsigned()) shown.insert(value.get<std::uint64_t>());
+  }
+  for (std::uint64_t i = 0; i < sizeof(OverloadCounters) / sizeof i; ++i) {
+    EXPECT_EQ(shown.count(7'000'000 + i), 1u) << "counter " << i << " of OverloadCounters";
+  }
+  for (std::uint64_t i = 0; i < sizeof(ResidencyCounters) / sizeof i; ++i) {
+    EXPECT_EQ(shown.count(8'000'000 + i), 1u) << "counter " << i << " of ResidencyCounters";
+  }
+}
+
 TEST_F(CtlText, ARobotThatIsAheadOfItsMapIsSaidSoFirst) {
   EXPECT_TRUE(complaints(status()).empty());
   live.state.zone_resident = false;
@@ -157,11 +190,22 @@ TEST_F(CtlText, TheViewFitsIntoAnyTerminal) {
   }
 }
 
-TEST_F(CtlText, TheViewTellsZonesBudgetTimelineAndNoEscapesWithoutColor) {
+TEST_F(CtlText, TheViewShowsZonesBudgetTimelineAndNoEscapesWithoutColor) {
   WatchView view;
-  view.set_zones({{"a", wire::ZoneState::Filling, true, false, 0, 10, 1},
-                  {"b", wire::ZoneState::Resident, true, true, 1, 10, 1},
-                  {"c\x1b[2J", wire::ZoneState::Absent, false, false, 0, 10, 1}});
+  view.set_zones(
+      {{.name = "a",
+        .state = wire::ZoneState::Filling,
+        .wanted = true,
+        .signatures = 10,
+        .bytes = 1},
+       {.name = "b",
+        .state = wire::ZoneState::Resident,
+        .wanted = true,
+        .pinned = true,
+        .leases = 1,
+        .signatures = 10,
+        .bytes = 1},
+       {.name = "c\x1b[2J", .state = wire::ZoneState::Absent, .signatures = 10, .bytes = 1}});
   for (int i = 0; i <= 120; ++i) {
     live.state.zone = i < 60 ? 0 : 1;
     live.state.zone_resident = i >= 70;

@@ -11,8 +11,10 @@
 
 namespace zonepack {
 
-// The maps of a run: the one in use, and another while the map changes. Who works with one holds
-// it; when the last lets go of one that was removed, its memory is free.   Threads: any.
+// The maps of a run: the one in use, and another while the map changes. Whoever works with one
+// holds it; when the last holder of a removed one lets go, its memory is free.
+//
+// Threads: any.
 class MapRegistry {
  public:
   void add(std::shared_ptr<MapVersion> map) {
@@ -27,7 +29,7 @@ class MapRegistry {
     return found == maps_.end() ? nullptr : *found;
   }
 
-  // What is expired when nobody holds it any more.
+  // Expires when nobody holds it any more.
   std::weak_ptr<MapVersion> remove(std::uint32_t number) {
     const std::weak_ptr<MapVersion> removed = find(number);
     const std::lock_guard lock(mutex_);

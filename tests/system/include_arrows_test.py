@@ -1,0 +1,219 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""usage: include_arrows_test.py SOURCE: each folder includes what this table allows, and is one target's.
+
+The table is exact: a folder or an arrow that the sources no longer have fails as well as one they should not have.
+An arrow names a folder, or one header of it where a folder may know no more.
+"""
+import re
+import sys
+from pathlib import Path
+
+PRODUCTS = ("platform", "runtime", "packer")
+
+ARROWS = {
+    "platform": "platform/base",
+    "platform/base": "",
+    "platform/sim": "platform platform/base",
+    "platform/linux": "platform platform/base",
+    "platform/linux/gpiod": "platform",
+    "platform/version": "",
+
+    "runtime/pack_format": "platform/base",
+    "runtime/pack_format/file": "platform platform/base runtime/pack_format",
+    "runtime/protocol": "platform platform/base runtime/pack_format",
+    "runtime/client": "platform platform/base runtime/memory/shared_layout.hpp runtime/pack_format runtime/protocol",
+    "runtime/report": "platform platform/base runtime/pack_format/file",
+
+    "runtime/memory": "platform platform/base runtime/pack_format",
+    "runtime/odometry": "platform platform/base",
+    "runtime/zones": "platform/base runtime/odometry runtime/pack_format runtime/pack_format/file",
+    "runtime/map": "platform platform/base runtime/pack_format runtime/pack_format/file",
+    "runtime/control": "platform platform/base runtime/map runtime/memory runtime/odometry runtime/pack_format"
+                       " runtime/zones",
+
+    "runtime/settings": "platform platform/base runtime/control runtime/odometry runtime/pack_format runtime/zones",
+    "runtime/run": "platform platform/base runtime/control runtime/map runtime/memory runtime/odometry"
+                   " runtime/pack_format runtime/pack_format/file runtime/report runtime/settings runtime/zones",
+    "runtime/recording": "platform platform/base runtime/control runtime/odometry runtime/pack_format"
+                         " runtime/pack_format/file runtime/run",
+    "runtime/state": "platform platform/base runtime/control runtime/odometry runtime/pack_format"
+                     " runtime/pack_format/file runtime/recording",
+    "runtime/serve": "platform platform/base runtime/control runtime/map runtime/memory runtime/odometry"
+                     " runtime/pack_format runtime/pack_format/file runtime/protocol runtime/run runtime/settings"
+                     " runtime/zones",
+    "runtime/live": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
+                    " runtime/odometry runtime/pack_format/file runtime/recording runtime/run runtime/serve"
+                    " runtime/settings runtime/state",
+    "runtime/replay": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
+                      " runtime/recording runtime/run runtime/settings",
+    "runtime/calibrate": "platform runtime/odometry runtime/run runtime/settings",
+    "runtime/zoned": "platform platform/version runtime/calibrate runtime/live runtime/pack_format/file"
+                     " runtime/recording runtime/replay runtime/report",
+    "runtime/ctl/commands": "platform runtime/control runtime/odometry runtime/pack_format/file runtime/protocol"
+                            " runtime/run runtime/settings",
+    "runtime/ctl": "platform/version runtime/ctl/commands runtime/protocol",
+
+    "packer/record": "",
+    "packer/sources": "packer/record",
+    "packer/outline": "packer/record packer/sources",
+    "packer/zones": "platform/base runtime/pack_format runtime/pack_format/file",
+    "packer/encode": "packer/record platform platform/base runtime/pack_format runtime/pack_format/file",
+    "packer/decode": "packer/record runtime/pack_format runtime/pack_format/file",
+    "packer/build": "packer/encode packer/sources packer/zones platform platform/base platform/version"
+                    " runtime/pack_format/file",
+    "packer/verify": "packer/decode packer/record packer/zones platform platform/base runtime/pack_format"
+                     " runtime/pack_format/file",
+    "packer/export": "packer/decode packer/record runtime/pack_format",
+    "packer/console": "platform platform/base runtime/pack_format",
+    "packer/inspect": "packer/console packer/verify platform runtime/pack_format/file",
+    "packer/commands": "packer/build packer/console packer/decode packer/export packer/inspect packer/outline"
+                       " packer/sources packer/verify packer/zones platform runtime/pack_format"
+                       " runtime/pack_format/file runtime/report",
+    "packer": "packer/commands platform/version runtime/pack_format/file",
+}
+
+GPIOD = r"gpiod\.h"
+# Headers of the system and of libraries, and the only folders that may include them. A pattern matches from the start.
+FOREIGN = {
+    r"(linux|asm|net|sys)/": "platform/linux platform/linux/gpiod",
+    GPIOD: "platform/linux/gpiod",  # one file, so that another version needs one more
+    r"flatbuffers/": "runtime/pack_format",
+    r"lz4": "runtime/pack_format/file runtime/recording packer/build packer/encode",
+    r"xxhash": "runtime/pack_format/file",
+    r"sodium": "runtime/pack_format/file runtime/run",
+    r"yaml-cpp/": "runtime/settings runtime/live",
+    r"Eigen/": "runtime/calibrate",
+    r"CLI/": "runtime/zoned runtime/ctl packer packer/commands packer/console",
+    r"sqlite3\.h": "packer/sources",
+    r"zlib\.h": "packer/sources",
+    r"nlohmann/": "packer/commands packer/console packer/inspect packer/outline packer/verify packer/zones",
+    r"opencv": "",
+}
+
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^">]+)[">]', re.MULTILINE)
+faults = []
+
+
+def fault(text):
+    faults.append(text)
+
+
+def folder_of(path):
+    return str(Path(path).parent)
+
+
+def sources_of(root):
+    """Of each folder with sources: its files."""
+    folders = {}
+    for product in PRODUCTS:
+        for path in sorted((root / product).rglob("*")):
+            if path.suffix in (".hpp", ".cpp", ".h", ".c"):
+                folders.setdefault(folder_of(path.relative_to(root)), []).append(path)
+    return folders
+
+
+def check_includes(root, folders):
+    used = {folder: set() for folder in folders}
+    foreign_used = {pattern: set() for pattern in FOREIGN}
+    for folder, files in folders.items():
+        allowed = set(ARROWS.get(folder, "").split())
+        for path in files:
+            where = path.relative_to(root)
+            for header in INCLUDE.findall(path.read_text()):
+                check_foreign(folder, where, header, foreign_used)
+                target = folder_of(header)
+                if header.split("/")[0] == "tests":
+                    fault(f"{where} includes {header}: products do not include tests")
+                elif header.split("/")[0] not in PRODUCTS:
+                    if target == "." and (path.parent / header).exists():
+                        fault(f"{where} includes {header} without its folder")
+                elif target != folder:
+                    arrow = header if header in allowed else target
+                    used[folder].add(arrow)
+                    if arrow not in allowed:
+                        fault(f"{where} includes {header}: {folder} may not include {target}")
+    for folder, targets in used.items():
+        for arrow in set(ARROWS.get(folder, "").split()) - targets:
+            fault(f"the table lets {folder} include {arrow}, which it does not")
+    for pattern, places in foreign_used.items():
+        for place in set(FOREIGN[pattern].split()) - places:
+            fault(f"the table lets {place} include {pattern}, which it does not")
+
+
+def check_foreign(folder, where, header, used):
+    for pattern, places in FOREIGN.items():
+        if not re.match(pattern, header):
+            continue
+        if folder in places.split():
+            used[pattern].add(folder)
+        else:
+            fault(f"{where} includes {header}, which is for {places or 'no folder'} only")
+
+
+def check_tests(root):
+    """libgpiod's header stands in one file of the products and in no test."""
+    for path in sorted((root / "tests").rglob("*")):
+        if path.suffix in (".hpp", ".cpp") and "gpiod.h" in INCLUDE.findall(path.read_text()):
+            fault(f"{path.relative_to(root)} includes gpiod.h, which is for {FOREIGN[GPIOD]} only")
+
+
+def check_table(folders):
+    for folder in sorted(set(folders) - set(ARROWS)):
+        fault(f"{folder} has sources and is not in the table")
+    for folder in sorted(set(ARROWS) - set(folders)):
+        fault(f"{folder} is in the table and has no sources")
+    done, path = set(), []
+
+    def visit(folder):
+        if folder in path:
+            fault("the table has a circle: " + " -> ".join(path[path.index(folder):] + [folder]))
+        elif folder not in done:
+            path.append(folder)
+            for arrow in ARROWS.get(folder, "").split():
+                visit(folder_of(arrow) if arrow.endswith(".hpp") else arrow)
+            path.pop()
+            done.add(folder)
+
+    for folder in ARROWS:
+        visit(folder)
+
+
+def check_targets(root, folders):
+    """A folder is a library or part of one: CMake names folders, each once, and no files."""
+    targets = {}
+    listings = [path for product in PRODUCTS for path in sorted((root / product).rglob("CMakeLists.txt"))]
+    for path in listings + sorted((root / "toolchains/cmake").glob("*.cmake")):
+        where = path.relative_to(root)
+        text = re.sub(r"#.*", "", path.read_text())
+        for pattern in (r"list\s*\(\s*FILTER", r"\bREGEX\b", r"\bMATCHES\s+\S*\.(?:cpp|hpp)", r"\bGLOB_RECURSE\b"):
+            if re.search(pattern, text):
+                fault(f"{where} sorts files by a pattern: {pattern}")
+        for name in re.findall(r"[\w*.\-]+\.(?:cpp|c|cc)\b", text):
+            if name != "*.cpp":
+                fault(f"{where} names {name}; a library is made of whole folders")
+        for target, dirs in re.findall(r"\bzonepack_(?:library|program)\s*\(\s*(\w+)\s+([^)$]*)\)", text):
+            for name in dirs.split():
+                folder = str(where.parent / name)
+                if folder in targets:
+                    fault(f"{folder} is in two targets, {targets[folder]} and {target}")
+                targets[folder] = target
+    for folder in sorted(set(folders) - set(targets)):
+        fault(f"{folder} is in no target")
+    for folder in sorted(set(targets) - set(folders)):
+        fault(f"target {targets[folder]} names {folder}, which has no sources")
+
+
+def main():
+    root = Path(sys.argv[1])
+    folders = sources_of(root)
+    check_table(folders)
+    check_includes(root, folders)
+    check_tests(root)
+    check_targets(root, folders)
+    for text in faults:
+        print(text)
+    return 1 if faults else 0
+
+
+sys.exit(main())
