@@ -19,7 +19,8 @@
 namespace zonepack {
 namespace {
 
-constexpr ByteCount kOverhead = 16 * kMiB;  // README: what a run takes beside its budget, at most
+constexpr ByteCount kOverhead =
+    16 * kMiB;  // runtime/README.md: what a run takes besides its budget
 
 struct Row {
   enum class Kind { kGood, kWeak, kRefused };

@@ -113,8 +113,8 @@ void ControlLoop::step(std::uint64_t cycle, std::int64_t began_ns) noexcept {
   measure(input, cycle, {began_ns, received_ns, ran_ns, monotonic_ns()});
 }
 
-// Those that were asked for while another map was in use mean other zones: whoever asked was told
-// of the change.
+// Those that were asked for while another map was in use refer to other zones: their senders
+// know of the change.
 std::size_t ControlLoop::take_commands() noexcept {
   std::size_t count = 0;
   if (freed_.exchange(false, std::memory_order_acquire)) {

@@ -85,7 +85,7 @@ class ControlLoop {
   // Offers another map, once the one offered before was given back by take_unused(). One other
   // thread.
   bool offer(MapInUse& next) noexcept;
-  // One that was to be offered cannot be used: the cycle tells why. The same thread.
+  // One that was to be offered cannot be used: the cycle reports why. The same thread.
   void offer_refused(ErrorCode fault) noexcept { refused_.store(fault, std::memory_order_relaxed); }
   // The map that is not used any more, once: after a change the one before, else the one offered.
   MapInUse* take_unused() noexcept { return unused_.exchange(nullptr, std::memory_order_acq_rel); }

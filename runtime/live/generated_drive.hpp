@@ -33,7 +33,7 @@ struct DriveSettings {
 void write_signal(const CanSignal& signal, double value, CanFrame& frame) noexcept;
 
 // The frames that the robot of some settings would send on a drive: all signals of its wheels at
-// every period, and what tells that watched CANopen nodes are alive. The first leg begins at 0.
+// every period, and the heartbeats of watched CANopen nodes. The first leg begins at 0.
 class GeneratedDrive final : public CanFrameSource {
  public:
   // Fails when frames of this model cannot be generated.

@@ -20,20 +20,20 @@
 
 namespace zonepack {
 
-// The robot's loader: a thread that reads packs into the slots of the shared map, chunk by chunk,
-// and gives up between two chunks when asked to.
-//
-// Threads: the calls of ZoneLoader by the control thread; the queues have room for every slot and
-// every load, so posting cannot fail. The thread owns the free slots, and those being filled.
 // How packs are read.
 struct ReadingChoice {
   ReadMode mode = kDefaultReadMode;
   std::uint64_t rate_limit = 0;  // bytes per second, 0: none
 };
 
+// The robot's loader: a thread that reads packs into the slots of the shared map, chunk by chunk,
+// and gives up between two chunks when asked to. It owns the free slots and those being filled.
+//
+// Real-time: the queues have room for every slot and every load, so posting cannot fail.
+// Threads: the control thread calls what ZoneLoader declares, the owner all else.
 class LiveLoader final : public ZoneLoader {
  public:
-  // `catalog` and `map` must outlive this object. Direct reads take ReadQueue::kBytes beside.
+  // `catalog` and `map` must outlive this object. Direct reads take ReadQueue::kBytes more.
   LiveLoader(const Catalog& catalog, SharedMap& map, const ReadingChoice& reading = {});
   ~LiveLoader() override;
 
@@ -89,7 +89,7 @@ class LiveLoader final : public ZoneLoader {
   std::unique_ptr<ReadQueue> queue_;  // for direct reads, where there are any
   ReadMode mode_;
   RateLimit rate_;
-  std::optional<ZoneLoad> load_;  // closed after its result is told: pages are dropped then
+  std::optional<ZoneLoad> load_;  // closed after its result is out: pages are dropped then
   Wakeup wakeup_;
   Thread thread_;
 };

@@ -11,7 +11,7 @@
 
 namespace zonepack {
 
-// What the control thread tells the log thread: events, then what the cycle did.
+// What the control thread passes to the log thread: events, then what the cycle did.
 struct LiveNote {
   enum class Kind : std::uint8_t { kEvent, kCycle };
   Kind kind = Kind::kEvent;
@@ -19,8 +19,10 @@ struct LiveNote {
   CycleRecord cycle;
 };
 
-// Hands the events of the control thread to those who write and serve them. Real-time: a copy for
-// each; a full queue costs the event, counted.   Threads: the control thread.
+// Passes the events of the control thread to those who write and serve them.
+//
+// Real-time: one copy each; a full queue loses the event, and counts it.
+// Threads: the control thread.
 class EventFanOut final : public EventSink {
  public:
   EventFanOut(SpscQueue<LiveNote>& notes, SpscQueue<Event>* service, OverloadCounters& overload)

@@ -105,7 +105,7 @@ void OutputLines::follow(const LiveStatus& status, const LoadEnd& load,
     Line* const line = find(kind);
     return line == nullptr || put(*line, active, now_ns);
   };
-  // map_ready falls first and rises last: nobody sees it beside a fault that is over, or comes.
+  // map_ready falls first and rises last: nobody sees it high together with a fault.
   bool told = ready || tell(OutputKind::kMapReady, false);
   const bool fault_told = tell(OutputKind::kFault, stuck || is_fault(status));
   if (ready) told = tell(OutputKind::kMapReady, true);

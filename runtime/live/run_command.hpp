@@ -8,7 +8,7 @@
 
 namespace zonepack {
 
-// What `zoned run` is told; empty paths: not given.
+// The command line of `zoned run`; empty paths: not given.
 struct RunArguments : RunChoices {
   CanSourceChoice source;
   std::string events, json;  // json "-": standard output

@@ -18,7 +18,7 @@
 namespace zonepack {
 
 // The thread that serves other programs, and the queues between it and the control thread. It also
-// tells the service manager's watchdog that the run is alive, as long as the control thread's
+// reports to the service manager's watchdog that the run is alive, as long as the control thread's
 // cycles go on.
 //
 // Threads: open(), start() and stop() by the owner; the queues as their names say.
@@ -40,7 +40,7 @@ class Service {
   Result<void> start(const Notifier& notifier, std::function<std::uint64_t()> cycles);
   void stop() noexcept;
 
-  const LineBoard* lines = nullptr;  // told to those who ask; before open()
+  const LineBoard* lines = nullptr;  // shown to those who ask; before open()
   SpscQueue<Event> events;           // control to server
   SpscQueue<Command> commands;       // server to control
   SpscQueue<CommandReply> replies;   // control to server
@@ -55,7 +55,7 @@ class Service {
   std::shared_ptr<const MapVersion> served_, offered_;
   std::mutex mutex_;                          // of what follows
   std::shared_ptr<const MapVersion> coming_;  // asked for
-  std::uint32_t known_ = 0;                   // the last one that the server was told of
+  std::uint32_t known_ = 0;                   // the last one that the server knows of
   std::uint32_t going_ = 0, gone_ = 0;        // asked to be let go of; let go of last
   std::uint32_t asked_to_go_ = 0;             // a turn ago: its events were taken since
   std::unique_ptr<Server> server_;

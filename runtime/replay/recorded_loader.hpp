@@ -9,10 +9,10 @@
 namespace zonepack {
 
 // The loader of a run that is driven again from its recording: nothing is loaded, and results come
-// from the recording. Remembers what the cycle asked for, to tell whether a result is an answer.
+// from the recording. Remembers what the cycle asked for, to check whether a result answers it.
 class RecordedLoader final : public ZoneLoader {
  public:
-  // Must outlive this object, like every one that it is told to use.
+  // Must outlive this object, like every catalog given to use().
   explicit RecordedLoader(const Catalog& catalog) : catalog_(&catalog) {}
 
   void load(const LoadRequest& request) noexcept override {

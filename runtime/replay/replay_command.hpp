@@ -7,7 +7,7 @@
 
 namespace zonepack {
 
-// What `zoned replay` is told; empty paths: not given.
+// The command line of `zoned replay`; empty paths: not given.
 struct ReplayArguments : RunChoices {
   std::string can;
   std::string recording;             // instead of all other inputs

@@ -6,7 +6,7 @@
 
 #include "platform/base/failure.hpp"
 
-// What RTAB-Map itself did on the same recording, to draw beside ours: one row for each image that
+// What RTAB-Map itself did on the same recording, to draw next to ours: one row for each image that
 // it processed. A CSV file with a line of column names (t, wm, cum_removed and cum_retrieved are
 // read, in any order) and comments from '#' on. RTAB-Map's `removed` counts the query images too,
 // one a row, so that map signatures unloaded = cumulative removed - rows.

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "platform/base/json_text.hpp"
 #include "platform/base/require.hpp"
 #include "runtime/pack_format/file/checksum.hpp"
 
@@ -18,25 +19,6 @@ const unsigned char* bytes_of(const std::string& text) noexcept {
 }
 
 }  // namespace
-
-std::string json_quoted(std::string_view text) {
-  constexpr std::string_view kHex = "0123456789abcdef";
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (byte < 0x20) {
-      out += "\\u00";
-      out += kHex[byte >> 4];
-      out += kHex[byte & 15];
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
-}
 
 EventLog::EventLog(std::function<std::string_view(ZoneId)> name_of) : name_of_(std::move(name_of)) {
   ZP_REQUIRE(sodium_init() >= 0);

@@ -14,9 +14,6 @@
 
 namespace zonepack {
 
-// A text as a JSON string with its quotes; bytes from 0x80 on are taken to be UTF-8.
-std::string json_quoted(std::string_view text);
-
 // The event log: one JSON object a line, in order, integers and names only, so that the same run
 // gives the same bytes on every machine. Fields, always in this order:
 //

@@ -23,8 +23,10 @@ struct LineRow {
   std::atomic<std::uint64_t> failures{0};  // calls that failed
 };
 
-// Where the threads of lines tell those who serve. Threads: add() before any other; each row is
-// written by the thread of its line and read by any.
+// Where the threads of lines publish how their lines stand, for the service.
+//
+// Threads: add() before any other starts; each row is written by the thread of its line and read by
+// any.
 class LineBoard {
  public:
   LineRow& add(std::string name, bool output) {

@@ -35,7 +35,7 @@ struct MapModel {
   ZoneGraph graph;
   std::vector<ZoneNeed> needs;
   std::vector<float> load_s;
-  // To reserve: no more than all zones fill together, and another version's largest beside them.
+  // To reserve: as many as all zones fill together, and another version's largest in addition.
   std::uint32_t slots;
   std::optional<std::string> warning;  // a complete message
 

@@ -41,7 +41,7 @@ ChartSeries compared(std::string name, std::vector<Sample> samples, Color color)
   return {.name = std::move(name), .samples = std::move(samples), .color = color, .compared = true};
 }
 
-// Where another's curves stand beside ours, ours need a name too.
+// Next to another's curves, ours need a name too.
 std::string ours(const char* what, const std::vector<BaselineRow>& baseline) {
   return std::string(baseline.empty() ? "" : "Zonepack ") + what;
 }

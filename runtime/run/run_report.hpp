@@ -13,7 +13,7 @@ namespace zonepack {
 
 // A replay as a report. Over time: signatures loaded and unloaded, signatures and bytes in memory
 // against their limits, the error of the pose; from above: the route coloured by zone. With a
-// baseline, RTAB-Map's own curves beside ours; with truth, the true route and the error.
+// baseline, RTAB-Map's own curves next to ours; with truth, the true route and the error.
 struct RunReportInput {
   std::string map;  // as given by the user
   std::string recording;

@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "platform/atomic_file.hpp"
-#include "runtime/run/event_log.hpp"
+#include "platform/base/json_text.hpp"
 
 namespace zonepack {
 namespace {

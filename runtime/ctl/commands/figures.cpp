@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "platform/base/json_text.hpp"
 #include "runtime/pack_format/file/checksum.hpp"
-#include "runtime/run/event_log.hpp"
 #include "runtime/serve/status_figures.hpp"
 
 namespace zonepack {

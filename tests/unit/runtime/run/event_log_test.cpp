@@ -90,10 +90,5 @@ TEST_F(EventLogTest, SaysWhenItsFileCannotBeMade) {
             (Error{ErrorCode::kIo, ENOENT}));
 }
 
-TEST(JsonQuoted, EscapesWhatJsonForbids) {
-  EXPECT_EQ(json_quoted("a\"b\\c\n\x01"), "\"a\\\"b\\\\c\\u000a\\u0001\"");
-  EXPECT_EQ(json_quoted("Öffnung"), "\"Öffnung\"");
-}
-
 }  // namespace
 }  // namespace zonepack
