@@ -9,7 +9,7 @@
 
 namespace zonepack {
 
-// One frame of a CAN bus, classic or FD, as the kernel or a log hands it over.
+// One frame of a CAN bus, classic or FD, as the kernel or a log delivers it.
 struct CanFrame {
   std::int64_t stamp_ns = 0;  // at reception, on the clock of its source
   std::uint32_t id = 0;       // 11 or 29 bits; of an error frame the class bits; no flag bits

@@ -41,7 +41,7 @@ class ReadQueue {
   // the ring has no room for some of them next to the pieces that have not been passed.
   bool ask(std::uint64_t offset, std::uint64_t size) noexcept;
 
-  // Waits for these bytes and returns them, if they were asked for and could be read. They stand in
+  // Waits for these bytes and returns them, if they were asked for and could be read. They are in
   // the ring until passed or, where they wrap around its end, in `buffer`, which must hold `size`
   // bytes.
   std::optional<std::span<const std::byte>> find(std::uint64_t offset, std::size_t size,

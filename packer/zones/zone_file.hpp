@@ -49,7 +49,7 @@ ZoneFile check_zone_file(const std::string& path, double snap_m = kDefaultSnap_m
 ZoneFile load_zone_file(const std::string& path, double snap_m = kDefaultSnap_m);
 
 // Why a name cannot name a zone or portal ("it is empty"); nothing when it can. Names become parts
-// of file names and stand unescaped in event logs: 1 to 64 bytes of UTF-8 without control
+// of file names and appear unescaped in event logs: 1 to 64 bytes of UTF-8 without control
 // characters, / \ and ", not beginning or ending with a blank, and not beginning with a dot.
 std::optional<std::string> find_name_problem(std::string_view name);
 

@@ -32,7 +32,7 @@ struct CloseChip {
 using Chip = std::unique_ptr<gpiod_chip, CloseChip>;
 
 struct FoundLine {
-  Chip chip;  // owns the line: closing it gives the line back
+  Chip chip;  // owns the line: closing it releases the line
   gpiod_line* line = nullptr;
 };
 
