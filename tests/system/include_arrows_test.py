@@ -47,11 +47,11 @@ ARROWS = {
                     " runtime/settings runtime/state",
     "runtime/replay": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
                       " runtime/recording runtime/run runtime/settings",
-    "runtime/calibrate": "platform runtime/odometry runtime/run runtime/settings",
+    "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
     "runtime/zoned": "platform platform/version runtime/calibrate runtime/live runtime/pack_format/file"
                      " runtime/recording runtime/replay runtime/report",
-    "runtime/ctl/commands": "platform runtime/control runtime/odometry runtime/pack_format/file runtime/protocol"
-                            " runtime/run runtime/settings",
+    "runtime/ctl/commands": "platform platform/base runtime/control runtime/odometry runtime/pack_format/file"
+                            " runtime/protocol runtime/run runtime/serve runtime/settings",
     "runtime/ctl": "platform/version runtime/ctl/commands runtime/protocol",
 
     "packer/record": "",
@@ -68,8 +68,8 @@ ARROWS = {
     "packer/console": "platform platform/base runtime/pack_format",
     "packer/inspect": "packer/console packer/decode packer/verify platform/base runtime/pack_format/file",
     "packer/commands": "packer/build packer/console packer/decode packer/export packer/inspect packer/outline"
-                       " packer/sources packer/verify packer/zones platform platform/base"
-                       " runtime/pack_format runtime/pack_format/file runtime/report",
+                       " packer/sources packer/verify packer/zones platform platform/base runtime/pack_format"
+                       " runtime/pack_format/file runtime/report",
     "packer": "packer/commands platform/version runtime/pack_format/file",
 }
 
