@@ -46,7 +46,7 @@ LiveRun::~LiveRun() {
 Outcome<void> LiveRun::start() {
   const auto begun = memory_.map().begin_map(zones_);
   ZP_REQUIRE(begun.ok());
-  const auto markers =
+  auto markers =
       ZoneMarkers::check(run_.accounted_map().model().graph, cycle_config(settings_).markers);
   if (!markers) return markers;
   if (auto opened = lines_.open(options_.allow_degraded); !opened) return opened;

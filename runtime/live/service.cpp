@@ -8,7 +8,7 @@
 namespace zonepack {
 namespace {
 
-constexpr std::size_t kStack_bytes = 256 * 1024;
+constexpr std::size_t kStack_bytes = std::size_t{256} * 1024;
 
 }  // namespace
 

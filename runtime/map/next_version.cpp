@@ -35,7 +35,7 @@ Outcome<void> check_next_version(const Catalog& in_use, const Catalog& next, Rea
     return failure(next.folder + ": is the version that is in use", ErrorCode::kExists);
   }
   for (ZoneId zone = 0; zone < next.zones.size(); ++zone) {
-    if (const auto checked = check_pack(next, zone, mode); !checked) return checked;
+    if (auto checked = check_pack(next, zone, mode); !checked) return checked;
   }
   return {};
 }

@@ -12,7 +12,7 @@ namespace zonepack {
 namespace {
 
 constexpr std::size_t kDigestBytes = 32;
-constexpr std::size_t kBufferBytes = 64 * 1024;
+constexpr std::size_t kBufferBytes = std::size_t{64} * 1024;
 
 const unsigned char* bytes_of(const std::string& text) noexcept {
   return reinterpret_cast<const unsigned char*>(text.data());

@@ -31,7 +31,7 @@ class MapRegistry {
 
   // Expires when nobody holds it any more.
   std::weak_ptr<MapVersion> remove(std::uint32_t number) {
-    const std::weak_ptr<MapVersion> removed = find(number);
+    std::weak_ptr<MapVersion> removed = find(number);
     const std::lock_guard lock(mutex_);
     std::erase_if(maps_, [&](const auto& map) { return map->number() == number; });
     return removed;

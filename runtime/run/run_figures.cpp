@@ -33,6 +33,7 @@ std::vector<Sample> samples_of(const RunTrace& trace, Fn&& value) {
 
 std::vector<Sample> samples_of(const std::vector<BaselineRow>& rows, double BaselineRow::*value) {
   std::vector<Sample> samples;
+  samples.reserve(rows.size());
   for (const BaselineRow& row : rows) samples.push_back({row.t_s, row.*value});
   return samples;
 }
@@ -92,6 +93,7 @@ std::vector<Color> zone_colors(const RunTrace& trace) {
     ++used[hue_of[zone]];
   }
   std::vector<Color> colors;
+  colors.reserve(hue_of.size());
   for (const std::size_t index : hue_of) colors.push_back(report::hue(index));
   return colors;
 }

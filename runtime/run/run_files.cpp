@@ -92,7 +92,7 @@ Outcome<void> for_each_record(const std::string& path, std::string_view columns,
   return {};
 }
 
-std::string quoted(std::string_view word) {
+std::string in_quotes(std::string_view word) {
   return std::string(1, '"').append(word).append(1, '"');
 }
 
@@ -101,14 +101,14 @@ Outcome<void> parse_numbers(std::span<const std::string_view> words, std::size_t
                             std::span<double> values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!parse_number(words[first + i], values[i])) {
-      return failure(quoted(words[first + i]) + " is not a number");
+      return failure(in_quotes(words[first + i]) + " is not a number");
     }
   }
   return {};
 }
 
 Failure not_a_stamp(std::string_view word) {
-  return failure(quoted(word) + " is not a stamp in seconds");
+  return failure(in_quotes(word) + " is not a stamp in seconds");
 }
 
 }  // namespace

@@ -10,13 +10,13 @@
 namespace zonepack {
 namespace {
 
-std::string in_quotes(std::string_view text) {
+std::string excerpt(std::string_view text) {
   return std::string(1, '"').append(text.substr(0, 60)).append(1, '"');
 }
 
 // The node's content, for a message.
 std::string shown(const YAML::Node& node) {
-  if (node.IsScalar()) return in_quotes(node.Scalar());
+  if (node.IsScalar()) return excerpt(node.Scalar());
   if (node.IsSequence()) return "a list";
   if (node.IsMap()) return "a section";
   return "nothing";
@@ -159,7 +159,7 @@ Outcome<void> YamlSection::parse(const YAML::Node& node, double least, double mo
 Outcome<void> YamlSection::parse(const YAML::Node& node, double least, double most,
                                  const char* unit, std::uint32_t& value) {
   std::uint64_t wide = 0;
-  const auto parsed = parse(node, least, std::min(most, 4294967295.0), unit, wide);
+  auto parsed = parse(node, least, std::min(most, 4294967295.0), unit, wide);
   if (parsed) value = static_cast<std::uint32_t>(wide);
   return parsed;
 }

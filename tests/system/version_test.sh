@@ -10,7 +10,7 @@ in_document() {  # FILE PATTERN: the version that the document of a format state
   sed -nE "s/.*$2 ([0-9]+(\.[0-9]+)?)[.;,\` ].*/\1/p" "$source/$1" | head -1
 }
 pack="pack format $(in_document runtime/pack_format/FORMAT.md '^Version')"
-recording="recording format $(in_document runtime/recording/RECORDING.md 'This page describes version')"
+recording="recording format $(in_document runtime/recording/RECORDING.md 'This page [a-z]+ version')"
 protocol="protocol $(in_document runtime/protocol/PROTOCOL.md '.version.')"
 expect() {  # PROGRAM FORMATS
   local line

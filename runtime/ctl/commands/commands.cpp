@@ -138,7 +138,7 @@ Outcome<void> ctl_events(const std::string& socket) {
       session->ask<wire::Done>([](auto& b) { return wire::CreateSubscribe(b, true); });
   if (!subscribed) return subscribed.error();
   while (!end_was_asked()) {
-    if (const auto heard = session->listen(200); !heard) return heard;
+    if (auto heard = session->listen(200); !heard) return heard;
   }
   return {};
 }

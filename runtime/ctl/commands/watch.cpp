@@ -41,7 +41,7 @@ Outcome<void> read_zones(CtlSession& session, WatchView& view) {
 
 // The next status, also added to the view's timeline; never null.
 Outcome<const wire::Status*> look(CtlSession& session, WatchView& view, std::int64_t started_ns) {
-  const auto status = session.ask<wire::Status>([](auto& b) { return wire::CreateAskStatus(b); });
+  auto status = session.ask<wire::Status>([](auto& b) { return wire::CreateAskStatus(b); });
   if (status) view.add_status(**status, static_cast<double>(monotonic_ns() - started_ns) / 1e9);
   return status;
 }
@@ -62,7 +62,7 @@ Outcome<void> watch_screen(CtlSession& session, WatchView& view) {
   FullScreen screen;
   const std::int64_t started_ns = monotonic_ns();
   while (!screen.ended()) {
-    if (const auto read = read_zones(session, view); !read) return read;
+    if (auto read = read_zones(session, view); !read) return read;
     const auto status = look(session, view, started_ns);
     if (!status) return status.error();
     const TerminalSize size = terminal_size();
