@@ -51,7 +51,7 @@ ARROWS = {
     "runtime/zoned": "platform platform/version runtime/calibrate runtime/live runtime/pack_format/file"
                      " runtime/recording runtime/replay runtime/report",
     "runtime/ctl/commands": "platform platform/base runtime/control runtime/odometry runtime/pack_format/file"
-                            " runtime/protocol runtime/run runtime/serve runtime/settings",
+                            " runtime/protocol runtime/serve runtime/settings",
     "runtime/ctl": "platform/version runtime/ctl/commands runtime/protocol",
 
     "packer/record": "",
