@@ -13,12 +13,14 @@
 #include "packer/commands/prune.hpp"
 #include "packer/commands/report.hpp"
 #include "packer/commands/verify.hpp"
+#include "platform/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/pack_format/file/pack_file.hpp"
 
 // An exception that comes here is a bug: it stops the process.
 // NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
+  zonepack::outlive_file_limits();
   CLI::App app(
       "Packs SLAM maps into zones that a robot can keep within a byte budget.\n"
       "Exit codes: 0 done, 1 the input or the world is bad, 2 usage.",

@@ -9,12 +9,14 @@
 namespace zonepack {
 
 // A lock that belongs to an open file description: every process that was sent a share of the
-// descriptor holds it too, and it ends with the last of them, however they end. A process that
-// cannot get it knows that some holder is left, such as a reader of a process that crashed.
+// descriptor holds it too, and it ends with the last of them, however they end. Any of them can
+// also release it for all, so a share goes only to a process that is trusted with that: the service
+// manager, not a client (presence.hpp).
 class FileLock {
  public:
   // Creates the file if it does not exist (its content does not matter). Retries every 20 ms for up
-  // to `wait`; kBusy when others still hold the lock then, kIo with errno.
+  // to `wait`; kBusy when others still hold the lock then, kExists when something other than a
+  // regular file has its name, kIo with errno.
   static Result<FileLock> acquire(const std::string& path, std::chrono::milliseconds wait);
 
   // Takes back a share: kBusy when it does not hold the lock and another descriptor does.

@@ -49,6 +49,9 @@ class LocalSocket {
   // Takes the next message without waiting. kBusy: there is none.
   Result<Received> receive(std::span<std::byte> buffer) const noexcept;
 
+  // Whether a message waits; false when the peer has only closed.
+  bool has_message() const noexcept;
+
   // Limits how many bytes wait in the kernel for the peer to read, besides one message.
   Result<void> limit_output(std::size_t bytes) const noexcept;
 

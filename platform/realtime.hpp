@@ -33,6 +33,9 @@ class Thread {
   ~Thread();
 
   void join() noexcept;
+  // Makes a system call in which the thread waits return EINTR; nothing when it waits in none. By a
+  // signal that this class handles (SIGUSR2).
+  void interrupt() noexcept;
   bool joinable() const noexcept { return handle_ != 0; }
   bool is_realtime() const noexcept { return realtime_; }
 

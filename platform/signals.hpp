@@ -7,6 +7,10 @@ namespace zonepack {
 
 enum class Signal : std::uint8_t { kNone, kStop, kReload };
 
+// Makes a write beyond the size that a file may have (ulimit -f) an error of that write, EFBIG,
+// instead of the process's end. First thing in a program.
+void outlive_file_limits() noexcept;
+
 // Blocks SIGTERM and SIGINT (stop) and SIGHUP (reload) until next_signal() asks for them, and
 // ignores SIGPIPE.
 //

@@ -29,6 +29,9 @@ class SlowJob {
 
   bool running() const noexcept { return thread_.joinable(); }
 
+  // Makes a system call in which the work waits return EINTR.
+  void interrupt() noexcept { thread_.interrupt(); }
+
  private:
   const char* name_;
   std::optional<Result<std::uint64_t>> result_;

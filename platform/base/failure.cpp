@@ -10,6 +10,14 @@ Failure cannot_write(const std::string& file, const Error& error) {
   return {error.code, file + ": cannot be written: " + reason_text(error)};
 }
 
+void Failures::add(const Failure& failure) {
+  if (none()) {
+    all_ = failure;
+  } else {
+    all_.message += '\n' + failure.message;
+  }
+}
+
 std::string reason_text(const Error& error) {
   if (error.code == ErrorCode::kIo && error.detail != 0) {
     return std::strerror(static_cast<int>(error.detail));

@@ -28,6 +28,25 @@ inline Failure failure(std::string message, ErrorCode code = ErrorCode::kBadValu
   return {code, std::move(message)};
 }
 
+// Several things that were tried, each of which may have failed alone.
+class Failures {
+ public:
+  void add(const Outcome<void>& outcome) {
+    if (!outcome) add(outcome.error());
+  }
+  void add(const Failure& failure);
+  bool none() const noexcept { return all_.code == ErrorCode::kOk; }
+
+  // All messages, one a line, with the first one's code; none: done.
+  Outcome<void> all() const {
+    if (none()) return {};
+    return all_;
+  }
+
+ private:
+  Failure all_;
+};
+
 // What is wrong with the command line.
 inline Failure usage_failure(std::string message) {
   return {ErrorCode::kUsage, std::move(message)};

@@ -7,4 +7,7 @@ namespace zonepack {
 // outputs into their safe state. Null: nothing runs.
 void set_last_act(void (*act)() noexcept) noexcept;
 
+// Runs it now, for a process that ends without its destructors. Later calls do nothing.
+void run_last_act() noexcept;
+
 }  // namespace zonepack

@@ -16,10 +16,14 @@ std::atomic<void (*)() noexcept> last_act{nullptr};
 
 void set_last_act(void (*act)() noexcept) noexcept { last_act.store(act); }
 
+void run_last_act() noexcept {
+  if (const auto act = last_act.exchange(nullptr)) act();
+}
+
 void require_failed(const char* condition, const char* file, int line) noexcept {
   std::fprintf(stderr, "zonepack: bug: %s does not hold (%s:%d); please report this\n", condition,
                file, line);
-  if (const auto act = last_act.exchange(nullptr)) act();
+  run_last_act();
   std::abort();
 }
 

@@ -125,6 +125,11 @@ Result<LocalSocket::Received> LocalSocket::receive(std::span<std::byte> buffer) 
   return received;
 }
 
+bool LocalSocket::has_message() const noexcept {
+  char first = 0;
+  return ::recv(fd_.get(), &first, 1, MSG_PEEK | MSG_DONTWAIT) > 0;
+}
+
 Result<void> LocalSocket::limit_output(std::size_t bytes) const noexcept {
   const int size = static_cast<int>(bytes / 2);  // the kernel doubles it for its own needs
   if (::setsockopt(fd_.get(), SOL_SOCKET, SO_SNDBUF, &size, sizeof size) != 0) return io_error();

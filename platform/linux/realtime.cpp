@@ -4,6 +4,7 @@
 #include <malloc.h>
 #include <pthread.h>
 #include <sched.h>
+#include <signal.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 
@@ -135,6 +136,16 @@ Thread::~Thread() { join(); }
 
 void Thread::join() noexcept {
   if (handle_ != 0) pthread_join(std::exchange(handle_, 0), nullptr);
+}
+
+void Thread::interrupt() noexcept {
+  if (handle_ == 0) return;
+  static const bool handled = [] {
+    struct sigaction action {};
+    action.sa_handler = [](int) {};  // without SA_RESTART
+    return sigaction(SIGUSR2, &action, nullptr) == 0;
+  }();
+  if (handled) pthread_kill(handle_, SIGUSR2);
 }
 
 Result<void> lock_memory_now() noexcept {

@@ -27,6 +27,8 @@ void hold_signals() noexcept {
   signal(SIGPIPE, SIG_IGN);
 }
 
+void outlive_file_limits() noexcept { signal(SIGXFSZ, SIG_IGN); }
+
 Signal next_signal(std::int64_t until_monotonic_ns) noexcept {
   const sigset_t set = held();
   const std::int64_t wait_ns = std::max<std::int64_t>(until_monotonic_ns - monotonic_ns(), 0);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <iostream>
 
+#include "platform/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/ctl/commands/commands.hpp"
 #include "runtime/protocol/messages.hpp"
@@ -91,6 +92,7 @@ void add_commands(CLI::App& app, Command& command, Words& words) {
 // An exception that comes here is a bug: it stops the process.
 // NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
+  outlive_file_limits();
   CLI::App app(
       "Asks and tells a running zoned.\n"
       "Exit codes: 0 done, 1 zoned or the world said no, 2 usage.",

@@ -23,24 +23,18 @@ Outcome<void> LiveMemory::share(const Choice& choice) {
   source.manager = choice.manager;
   source.handed = choice.handed;
   auto arena = ArenaMemory::obtain(shared_map_bytes(choice.zones, choice.slots), source);
-  if (!arena) {
-    const ErrorCode code = arena.error().code;
-    if (code == ErrorCode::kBusy) return failure(ArenaMemory::why_busy(source), code);
-    return failure("serve.socket: " + source.lock_path + ": " + reason_text(arena.error()) +
-                       "; its folder must exist and be writable",
-                   code);
-  }
+  if (!arena) return arena.error();
   auto reader = arena->reader_memory();
-  auto lock = arena->reader_lock();
-  if (!reader || !lock) {
-    const Error& error = reader ? lock.error() : reader.error();
+  auto presence = arena->reader_presence();
+  if (!reader || !presence) {
+    const Error& error = reader ? presence.error() : reader.error();
     return failure("the memory cannot be opened for readers: " + reason_text(error) +
                        "; /proc must be mounted",
                    error.code);
   }
   arena_.emplace(std::move(*arena));
   reader_ = std::move(*reader);
-  lock_ = std::move(*lock);
+  presence_ = std::move(*presence);
   return {};
 }
 

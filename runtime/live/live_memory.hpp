@@ -37,7 +37,7 @@ class LiveMemory {
   bool served() const noexcept { return arena_.has_value(); }
   // For readers; -1 when not served.
   int reader_fd() const noexcept { return reader_.get(); }
-  int lock_fd() const noexcept { return lock_.get(); }
+  int presence_fd() const noexcept { return presence_.get(); }
 
  private:
   LiveMemory() = default;
@@ -46,7 +46,7 @@ class LiveMemory {
   std::optional<ArenaMemory> arena_;
   std::optional<SharedMemory> own_;
   std::optional<SharedMap> map_;
-  Descriptor reader_, lock_;
+  Descriptor reader_, presence_;
   std::string warning_;
 };
 

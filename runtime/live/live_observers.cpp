@@ -72,10 +72,10 @@ Outcome<void> LiveObservers::open_service(const ServeSettings& settings, const L
   ServeSettings reached = settings;
   reached.socket = socket_path(settings);
   service.lines = &lines;
-  std::function<Result<std::uint64_t>(int)> dump;
+  std::function<Result<std::uint64_t>(BoundedWriter&)> dump;
   if (FlightRecorder* const flight = recording.flight()) {
-    dump = [flight](int fd) -> Result<std::uint64_t> {
-      const auto dumped = flight->dump_to(fd);
+    dump = [flight](BoundedWriter& to) -> Result<std::uint64_t> {
+      const auto dumped = flight->dump_to(to);
       if (!dumped) return dumped.error();
       return dumped->bytes;
     };

@@ -18,11 +18,12 @@ constexpr std::int64_t kWatch_ns = 20'000'000;
 }  // namespace
 
 LiveRun::LiveRun(RunInputs& inputs, std::shared_ptr<MapVersion> map, LiveMemory& memory,
-                 const Notifier& notifier, LiveOptions options)
+                 const Notifier& notifier, EndGuard& guard, LiveOptions options)
     : files_(inputs),
       settings_(inputs.settings),
       memory_(memory),
       notifier_(notifier),
+      guard_(guard),
       options_(std::move(options)),
       period_ns_(options_.preface.terms.period_ns),
       zones_(static_cast<std::uint32_t>(map->model().needs.size())),
@@ -153,7 +154,9 @@ void LiveRun::wait() {
     }
     switch (next_signal(monotonic_ns() + kWatch_ns)) {
       case Signal::kStop:
+        guard_.stop_asked();
         control_.stop();
+        inputs_.source().ask_stop();
         break;
       case Signal::kReload:
         change_->ask();
@@ -165,24 +168,32 @@ void LiveRun::wait() {
   }
 }
 
-Outcome<RunSummary> LiveRun::finish() {
+Outcome<RunSummary> LiveRun::finish(Failures& outputs) {
+  guard_.watch();
   const auto controlled = control_.join();
+  guard_.waits_for("the threads of the GPIO lines");
   lines_.stop();
   (void)notifier_.stopping();
+  guard_.waits_for("the thread that serves clients");
   observers_.stop_serving();
   if (!controlled) return controlled.error();
   run_.end();
+  guard_.waits_for("the thread that loads zones from the map's folder");
   control_.loader.stop();
+  guard_.waits_for("the source of frames (--can)");
   inputs_.stop();
+  guard_.waits_for("the thread that writes --events, --record and --record-can, or the state");
   observers_.stop();
-  if (const auto closed = inputs_.close(); !closed) return closed.error();
-  auto summary =
+  guard_.waits_for("--record-can");
+  outputs.add(inputs_.close());
+  guard_.waits_for("--events");
+  RunSummary summary =
       run_.summarise(control_.loader.bytes_loaded(), control_.loop().last_status().can_frames);
-  if (!summary) return summary;
-  if (const auto recorded = observers_.recording.finish(summary->event_log_hash); !recorded) {
-    return recorded.error();
-  }
-  return with_live_figures(std::move(*summary));
+  outputs.add(run_.close_events());
+  guard_.waits_for("--record");
+  outputs.add(observers_.recording.finish(summary.event_log_hash));
+  guard_.waits_for("--json and the summary");
+  return with_live_figures(std::move(summary));
 }
 
 RunSummary LiveRun::with_live_figures(RunSummary summary) const {

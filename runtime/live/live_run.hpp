@@ -10,6 +10,7 @@
 #include "platform/can_log.hpp"
 #include "platform/notify.hpp"
 #include "runtime/live/can_source.hpp"
+#include "runtime/live/end_guard.hpp"
 #include "runtime/live/live_control.hpp"
 #include "runtime/live/live_inputs.hpp"
 #include "runtime/live/live_lines.hpp"
@@ -43,7 +44,7 @@ class LiveRun {
  public:
   // All but map and options must outlive this object. The map goes when another replaces it.
   LiveRun(RunInputs& inputs, std::shared_ptr<MapVersion> map, LiveMemory& memory,
-          const Notifier& notifier, LiveOptions options);
+          const Notifier& notifier, EndGuard& guard, LiveOptions options);
   ~LiveRun();
 
   // Reserves and locks memory and starts the threads. When something is refused, nothing runs.
@@ -53,9 +54,9 @@ class LiveRun {
   // version of the map.
   void wait();
 
-  // Ends the threads in order, and says how it went. Once, after start(). Fails when results could
-  // not be written.
-  Outcome<RunSummary> finish();
+  // Ends the threads in order, and says how it went. Once, after start(). An output that could not
+  // be written is added to `outputs`; the others are completed all the same.
+  Outcome<RunSummary> finish(Failures& outputs);
 
   // Of a log that was played: what was wrong with it.
   const CanLogSummary* log_summary() const { return inputs_.source().log_summary(); }
@@ -71,6 +72,7 @@ class LiveRun {
   const Settings& settings_;
   LiveMemory& memory_;
   const Notifier& notifier_;
+  EndGuard& guard_;
   LiveOptions options_;
   const std::int64_t period_ns_;
   const std::uint32_t zones_;  // of the first map

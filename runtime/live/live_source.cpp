@@ -42,6 +42,7 @@ class LogSource final : public LiveSource {
     return name.empty() ? "can0" : name;
   }
   void stop() noexcept override { feed_.stop(); }
+  void ask_stop() noexcept override { feed_.ask_stop(); }
   const CanLogSummary* log_summary() const noexcept override { return &log_.summary(); }
 
  private:
@@ -93,6 +94,7 @@ class ScriptSource final : public LiveSource {
   bool robot() const noexcept override { return false; }
   std::string interface() const override { return interface_; }
   void stop() noexcept override { feed_.stop(); }
+  void ask_stop() noexcept override { feed_.ask_stop(); }
 
  private:
   std::unique_ptr<ScriptedBus> script_;

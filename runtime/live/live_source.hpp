@@ -40,6 +40,7 @@ class LiveSource {
   virtual bool robot() const noexcept = 0;             // cannot wait, repeat or hurry
   virtual std::string interface() const = 0;           // whose frames they are, as in a log
   virtual void stop() noexcept {}
+  virtual void ask_stop() noexcept {}                 // as stop(), without waiting for a thread
   virtual std::string warning() const { return {}; }  // what works, but not as it should
   virtual const CanLogSummary* log_summary() const noexcept { return nullptr; }
 };

@@ -32,6 +32,8 @@ class LogFeed final : public RunClock {
   // Reads the first frame, and goes on in a thread; kNotFound when there is none.
   Result<void> start();
   void stop() noexcept;
+  // The same without waiting for the thread.
+  void ask_stop() noexcept { stop_.store(true); }
 
   SimCanBus& bus() noexcept { return bus_; }
   SpscQueue<PoseCorrection>& corrections() noexcept { return corrections_; }

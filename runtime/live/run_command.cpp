@@ -65,9 +65,23 @@ Notifier service_manager() {
   return {};
 }
 
-// The run, from what was read of it to its summary.
-Outcome<RunSummary> drive(const RunArguments& arguments, RunInputs& inputs,
-                          std::vector<HandedFile>& handed) {
+// The end of a run: writes what is left to write while the guard still watches.
+Outcome<void> conclude(const RunArguments& arguments, LiveRun& run) {
+  Failures failed;
+  auto summary = run.finish(failed);
+  if (!summary) return summary.error();
+  if (const CanLogSummary* const log = run.log_summary()) {
+    tell_log_faults(arguments.source.name, *log);
+    summary->can_rejected += log->broken_lines + log->stray_stamps;
+  }
+  failed.add(write_summary(*summary, arguments.json));
+  failed.add(check_limits(*summary));
+  return failed.all();
+}
+
+// The run, from what was read of it to its end.
+Outcome<void> drive(const RunArguments& arguments, RunInputs& inputs,
+                    std::vector<HandedFile>& handed, EndGuard& guard) {
   MapTerms terms = map_terms(arguments, inputs.settings);
   terms.lease_ns = static_cast<std::int64_t>(inputs.settings.serve.lease_s * 1e9);
   auto map = MapVersion::make(1, std::move(inputs.catalog), terms);
@@ -88,7 +102,7 @@ Outcome<RunSummary> drive(const RunArguments& arguments, RunInputs& inputs,
 
   auto preface = make_preface(arguments, inputs, (*map)->catalog(), terms);
   if (!preface) return preface.error();
-  LiveRun run(inputs, std::move(*map), **memory, notifier,
+  LiveRun run(inputs, std::move(*map), **memory, notifier, guard,
               {.source = arguments.source,
                .start = arguments.start,
                .events = arguments.events,
@@ -100,13 +114,9 @@ Outcome<RunSummary> drive(const RunArguments& arguments, RunInputs& inputs,
                .allow_degraded = arguments.allow_degraded});
   if (const auto started = run.start(); !started) return started.error();
   run.wait();
-  auto summary = run.finish();
-  if (!summary) return summary;
-  if (const CanLogSummary* const log = run.log_summary()) {
-    tell_log_faults(arguments.source.name, *log);
-    summary->can_rejected += log->broken_lines + log->stray_stamps;
-  }
-  return summary;
+  const auto concluded = conclude(arguments, run);
+  guard.waits_for("a thread that hangs in a call");
+  return concluded;
 }
 
 Outcome<void> run_and_report(const RunArguments& arguments) {
@@ -120,10 +130,8 @@ Outcome<void> run_and_report(const RunArguments& arguments) {
   use_one_heap(kHeapBytes);
   auto inputs = read_run_inputs(arguments);
   if (!inputs) return inputs.error();
-  const auto summary = drive(arguments, *inputs, handed);
-  if (!summary) return summary.error();
-  if (auto written = write_summary(*summary, arguments.json); !written) return written;
-  return check_limits(*summary);
+  EndGuard guard({socket_path(inputs->settings.serve), inputs->settings.serve.looking_socket});
+  return drive(arguments, *inputs, handed, guard);
 }
 
 }  // namespace

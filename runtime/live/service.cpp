@@ -9,12 +9,13 @@ namespace zonepack {
 namespace {
 
 constexpr std::size_t kStack_bytes = std::size_t{256} * 1024;
+constexpr std::int64_t kDumpEnd_ns = 2'000'000'000;
 
 }  // namespace
 
 Outcome<void> Service::open(const ServeSettings& settings, const Seqlock<LiveStatus>& status,
                             LiveMemory& memory, std::shared_ptr<const MapVersion> first,
-                            std::function<Result<std::uint64_t>(int fd)> dump) {
+                            std::function<Result<std::uint64_t>(BoundedWriter& to)> dump) {
   SharedMap& map = memory.map();
   const ServerPorts ports{
       .status = status,
@@ -23,7 +24,7 @@ Outcome<void> Service::open(const ServeSettings& settings, const Seqlock<LiveSta
       .replies = replies,
       .poses = poses,
       .memory_fd = memory.reader_fd(),
-      .lock_fd = memory.lock_fd(),
+      .presence_fd = memory.presence_fd(),
       .map_epoch = map.epoch(),
       .lease_ns = first->model().limits.lease_ns,
       .resident_generation = [&map](ZoneId zone) { return map.generation(zone); },
@@ -50,6 +51,7 @@ Result<void> Service::start(const Notifier& notifier, std::function<std::uint64_
 void Service::stop() noexcept {
   stop_.store(true);
   thread_.join();
+  if (server_) (void)server_->stop_dump(monotonic_ns() + kDumpEnd_ns);
 }
 
 void Service::run(const Notifier& notifier) {

@@ -30,7 +30,7 @@ class Service {
   // Starts to listen.
   Outcome<void> open(const ServeSettings& settings, const Seqlock<LiveStatus>& status,
                      LiveMemory& memory, std::shared_ptr<const MapVersion> map,
-                     std::function<Result<std::uint64_t>(int fd)> dump);
+                     std::function<Result<std::uint64_t>(BoundedWriter& to)> dump);
 
   // A change of map, by one thread that asks until the answer is true. Before the offer: the server
   // knows the map. After it: the server has let go of this one.

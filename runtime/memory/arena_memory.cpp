@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "platform/file_kind.hpp"
+
 namespace zonepack {
 namespace {
 
@@ -18,16 +20,50 @@ Descriptor take(std::vector<HandedFile>* handed, const char* name) {
   return file;
 }
 
+Failure why_busy(const ArenaMemory::Source& source) {
+  return failure(
+      "the memory of an earlier zoned is still held by programs that read it, or by a zoned that "
+      "runs: end them (fuser " +
+          source.lock_path + " " + ArenaMemory::readers_path(source) +
+          " lists their process ids; package psmisc), or run zoned as a service that keeps its "
+          "memory (FileDescriptorStoreMax=2)",
+      ErrorCode::kBusy);
+}
+
+// The file at `path` could not be had.
+Failure refused(const std::string& path, const char* expected, const Error& error) {
+  const auto other = not_a_regular_file(path);
+  if (error.code == ErrorCode::kExists) {
+    return failure("serve.socket: " + path + ": is " + other.value_or("a regular file") +
+                       "; expected " + expected + " of zoned's own, or nothing; remove it",
+                   error.code);
+  }
+  return failure("serve.socket: " + path + ": " + reason_text(error) +
+                     "; its folder must exist and be writable for this user",
+                 error.code);
+}
+
+Failure unkept(const Error& error) {
+  return failure("the service manager does not keep the shared memory: " + reason_text(error) +
+                     "; run zoned without NOTIFY_SOCKET",
+                 error.code);
+}
+
 }  // namespace
 
-Result<ArenaMemory> ArenaMemory::obtain(ByteCount bytes, const Source& source) {
+Outcome<ArenaMemory> ArenaMemory::obtain(ByteCount bytes, const Source& source) {
+  const std::string readers_at = readers_path(source);
   Descriptor kept_memory = take(source.handed, kMemoryName);
   Descriptor kept_lock = take(source.handed, kLockName);
   if (kept_memory.is_open() && kept_lock.is_open()) {
     Result<FileLock> lock = FileLock::adopt(std::move(kept_lock));
     if (lock) {
       Result<SharedMemory> memory = SharedMemory::adopt(std::move(kept_memory), bytes);
-      if (memory) return ArenaMemory(std::move(*memory), std::move(*lock), true);
+      Result<Presence> readers = Presence::join(readers_at);
+      if (!readers) return refused(readers_at, "a FIFO", readers.error());
+      if (memory) {
+        return ArenaMemory(std::move(*memory), std::move(*lock), std::move(*readers), true);
+      }
     }
   }
   // Unusable: release it before waiting for anything.
@@ -36,23 +72,26 @@ Result<ArenaMemory> ArenaMemory::obtain(ByteCount bytes, const Source& source) {
   const Notifier none;
   const Notifier& manager = source.manager == nullptr ? none : *source.manager;
   for (const char* const name : {kMemoryName, kLockName}) {
-    if (const Result<void> forgotten = manager.forget(name); !forgotten) return forgotten.error();
+    if (const Result<void> forgotten = manager.forget(name); !forgotten) {
+      return unkept(forgotten.error());
+    }
   }
   Result<FileLock> lock = FileLock::acquire(source.lock_path, source.wait);
-  if (!lock) return lock.error();
+  if (!lock && lock.error().code == ErrorCode::kBusy) return why_busy(source);
+  if (!lock) return refused(source.lock_path, "a file", lock.error());
+  Result<Presence> readers = Presence::begin(readers_at, source.wait);
+  if (!readers && readers.error().code == ErrorCode::kBusy) return why_busy(source);
+  if (!readers) return refused(readers_at, "a FIFO", readers.error());
   Result<SharedMemory> memory = SharedMemory::create(kMemoryName, bytes);
-  if (!memory) return memory.error();
+  if (!memory) {
+    return failure("memory.budget: the memory cannot be had: " + reason_text(memory.error()) +
+                       "; allow less, or end other programs",
+                   memory.error().code);
+  }
   Result<void> kept = manager.keep(kMemoryName, memory->file());
   if (kept) kept = manager.keep(kLockName, lock->file());
-  if (!kept) return kept.error();
-  return ArenaMemory(std::move(*memory), std::move(*lock), false);
-}
-
-std::string ArenaMemory::why_busy(const Source& source) {
-  return "the memory of an earlier zoned is still held by programs that read it, or by a zoned "
-         "that runs: end them (fuser " +
-         source.lock_path +
-         " names them), or run zoned as a service that keeps its memory (FileDescriptorStoreMax=2)";
+  if (!kept) return unkept(kept.error());
+  return ArenaMemory(std::move(*memory), std::move(*lock), std::move(*readers), false);
 }
 
 }  // namespace zonepack

@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "platform/base/result.hpp"
+#include "platform/base/failure.hpp"
 #include "platform/file_lock.hpp"
 #include "platform/notify.hpp"
+#include "platform/presence.hpp"
 #include "platform/shared_memory.hpp"
 
 namespace zonepack {
@@ -16,8 +17,9 @@ namespace zonepack {
 // once: readers of the old one keep its pages charged for as long as they map them.
 //
 // The service manager keeps the memory while zoned is down, and the next zoned takes over the same
-// pages. Where no manager does, or the size differs, a lock decides: every reader receives a share
-// of it together with the memory, so it stays held until the last reader is gone.
+// pages. A lock keeps a second zoned away while one runs; no reader ever has it. Where no manager
+// keeps the memory, or the size differs, the readers' presence decides: every reader receives a
+// share of that together with the memory, and zoned waits until the last one is gone.
 class ArenaMemory {
  public:
   struct Source {
@@ -27,26 +29,32 @@ class ArenaMemory {
     std::vector<HandedFile>* handed = nullptr;  // what the manager kept; taken out when used
   };
 
-  // kBusy: after `wait`, readers of an earlier zoned, or another zoned, still hold its memory;
-  // why_busy() explains it to people. kIo with errno.
-  static Result<ArenaMemory> obtain(ByteCount bytes, const Source& source);
-  static std::string why_busy(const Source& source);
+  // Where the presence of readers shows.
+  static std::string readers_path(const Source& source) { return source.lock_path + ".readers"; }
+
+  // kBusy: after `wait`, readers of an earlier zoned, or another zoned, still hold its memory.
+  static Outcome<ArenaMemory> obtain(ByteCount bytes, const Source& source);
 
   std::span<std::byte> bytes() noexcept { return memory_.bytes(); }
   // True for the memory of an earlier zoned, with its content: SharedMap::lay_out() begins a new
   // epoch there.
   bool taken_over() const noexcept { return taken_over_; }
 
-  // For each reader: the memory, open for reading only, and a share of the lock, to be sent along.
+  // For each reader: the memory, open for reading only, and a share of the readers' presence, to be
+  // sent along. A reader can only keep or close it.
   Result<Descriptor> reader_memory() const { return memory_.reader_file(); }
-  Result<Descriptor> reader_lock() const { return lock_.file().share(); }
+  Result<Descriptor> reader_presence() const { return readers_.share(); }
 
  private:
-  ArenaMemory(SharedMemory memory, FileLock lock, bool taken_over)
-      : memory_(std::move(memory)), lock_(std::move(lock)), taken_over_(taken_over) {}
+  ArenaMemory(SharedMemory memory, FileLock lock, Presence readers, bool taken_over)
+      : memory_(std::move(memory)),
+        lock_(std::move(lock)),
+        readers_(std::move(readers)),
+        taken_over_(taken_over) {}
 
   SharedMemory memory_;
   FileLock lock_;
+  Presence readers_;
   bool taken_over_;
 };
 

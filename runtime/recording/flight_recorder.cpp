@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "platform/atomic_file.hpp"
-#include "platform/descriptor.hpp"
 #include "runtime/recording/block.hpp"
 #include "runtime/recording/flight_names.hpp"
 #include "runtime/recording/recording_end.hpp"
@@ -45,15 +44,15 @@ Result<AppendFile> make_file(const std::string& folder, bool named, const std::s
   return named ? AppendFile::create(folder + "/" + name) : AppendFile::create_unnamed(folder);
 }
 
-Result<void> copy(const AppendFile& from, std::uint64_t size, int to) {
+Result<void> copy(const AppendFile& from, std::uint64_t size, BoundedWriter& to) {
   std::vector<std::byte> buffer(kCopyBytes);
   for (std::uint64_t at = 0; at < size;) {
     const auto part = std::span(buffer).first(std::min<std::uint64_t>(kCopyBytes, size - at));
     if (const auto read = from.read_at(at, part); !read) return read;
-    if (const auto written = write_all(to, part); !written) return written;
+    if (const auto written = to.write(part); !written) return written;
     at += part.size();
     if (at % AppendFile::kSettleBytes == 0) {
-      drop_page_cache(to);
+      drop_page_cache(to.descriptor());
       from.forget();
     }
   }
@@ -167,13 +166,15 @@ std::deque<std::shared_ptr<FlightRecorder::Segment>> FlightRecorder::whole_segme
 Result<FlightRecorder::Dumped> FlightRecorder::dump(const std::string& path) const {
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return file.error();
-  const Result<Dumped> dumped = dump_to(file->descriptor());
+  const std::atomic<bool> never{false};
+  BoundedWriter to(file->descriptor(), never, {});
+  const Result<Dumped> dumped = dump_to(to);
   if (!dumped) return dumped;
   if (const auto done = file->commit(); !done) return done.error();
   return dumped;
 }
 
-Result<FlightRecorder::Dumped> FlightRecorder::dump_to(int fd) const {
+Result<FlightRecorder::Dumped> FlightRecorder::dump_to(BoundedWriter& to) const {
   Dumped dumped;
   std::vector<Part> kept;
   {
@@ -190,16 +191,16 @@ Result<FlightRecorder::Dumped> FlightRecorder::dump_to(int fd) const {
     for (const auto& map : maps_) keep(map);
     for (const auto& segment : segments) keep(segment);
   }
-  Result<void> done = copy(preface_, preface_.size(), fd);
+  Result<void> done = copy(preface_, preface_.size(), to);
   dumped.bytes = preface_.size();
   for (const Part& part : kept) {
-    if (done) done = copy(*part.file, part.size, fd);
+    if (done) done = copy(*part.file, part.size, to);
     dumped.bytes += part.size;
   }
   std::vector<std::byte> end;
   seal_block(BlockKind::kEnd, write_end({false, dumped.next_cycle, 0, {}}), end);
   dumped.bytes += end.size();
-  if (done) done = write_all(fd, end);
+  if (done) done = to.write(end);
   if (!done) return done.error();
   return dumped;
 }

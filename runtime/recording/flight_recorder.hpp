@@ -11,6 +11,7 @@
 #include "platform/append_file.hpp"
 #include "platform/base/byte_count.hpp"
 #include "platform/base/result.hpp"
+#include "platform/bounded_writer.hpp"
 #include "runtime/recording/bytes.hpp"
 #include "runtime/recording/checkpoint.hpp"
 #include "runtime/recording/preface.hpp"
@@ -51,8 +52,8 @@ class FlightRecorder {
   };
   // Writes what is kept as one recording that appears atomically; kNotFound when no cycle is kept.
   Result<Dumped> dump(const std::string& path) const;
-  // The same into an open file, from its current offset.
-  Result<Dumped> dump_to(int fd) const;
+  // The same into an open file, from its current offset, within the writer's bounds.
+  Result<Dumped> dump_to(BoundedWriter& to) const;
 
   // The size of all files now.
   ByteCount kept_bytes() const;

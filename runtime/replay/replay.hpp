@@ -35,6 +35,7 @@ struct ReplayInput {
 struct ReplayResult {
   RunSummary summary;
   RunTrace trace;
+  Outcome<void> events_written;       // the event log's file
   std::vector<std::string> faults;    // complete messages: zones that could not be loaded
   std::vector<std::string> warnings;  // complete messages
 };

@@ -36,18 +36,22 @@ ReplayInput replay_input(const ReplayArguments& arguments, RunInputs& inputs, Ca
 
 Outcome<void> write_results(const ReplayArguments& arguments, const Catalog& catalog,
                             const std::vector<BaselineRow>& baseline, const ReplayResult& result) {
-  if (auto written = write_summary(result.summary, arguments.json); !written) return written;
+  Failures failed;
+  failed.add(result.events_written);
+  failed.add(write_summary(result.summary, arguments.json));
   const std::string& source = arguments.can.empty() ? arguments.recording : arguments.can;
   const RunReportInput run{catalog.folder, source, result.summary, result.trace, baseline};
   if (!arguments.picture.empty()) {
-    auto drawn = report::write_report(arguments.picture, make_run_picture(run));
-    if (!drawn) return drawn;
+    failed.add(report::write_report(arguments.picture, make_run_picture(run)));
   }
-  if (arguments.report.empty()) return {};
-  return report::write_report(arguments.report, make_run_report(run));
+  if (!arguments.report.empty()) {
+    failed.add(report::write_report(arguments.report, make_run_report(run)));
+  }
+  return failed.all();
 }
 
-// The end of a replay that worked: results, and whether a limit was exceeded.
+// The end of a replay that worked: results, each of which fails alone, and whether a limit was
+// exceeded.
 Outcome<void> conclude(const ReplayArguments& arguments, const Catalog& catalog,
                        const std::vector<BaselineRow>& baseline, const ReplayResult& result) {
   for (const std::string& text : result.faults) note(text);

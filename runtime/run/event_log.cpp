@@ -46,15 +46,20 @@ void EventLog::flush() {
   buffer_.clear();
 }
 
-Result<std::string> EventLog::finish() {
+Result<void> EventLog::close() {
   if (file_) {
     flush();
     if (write_error_.code == ErrorCode::kOk) write_error_ = file_->commit().error();
     file_.reset();
   }
   if (write_error_.code != ErrorCode::kOk) return write_error_;
+  return {};
+}
+
+std::string EventLog::hash() const {
+  crypto_generichash_state so_far = hash_;
   std::array<std::uint8_t, kDigestBytes> digest{};
-  crypto_generichash_final(&hash_, digest.data(), digest.size());
+  crypto_generichash_final(&so_far, digest.data(), digest.size());
   return to_hex(digest);
 }
 

@@ -42,13 +42,15 @@ class EventLog final : public EventSink {
   // name_of gives a zone's name; it must outlive this object.
   explicit EventLog(std::function<std::string_view(ZoneId)> name_of);
 
-  // Writes the log to a file too, which appears whole at finish(). Before the first event.
+  // Writes the log to a file too, which appears whole at close(). Before the first event.
   Result<void> write_to(const std::string& path);
 
   void on_event(const Event& event) noexcept override;
 
-  // Ends the log: BLAKE2b-256 of all its bytes in hex, or why it could not be written.
-  Result<std::string> finish();
+  // After the last event: completes the file, if there is one; why it could not be written.
+  Result<void> close();
+  // BLAKE2b-256 of all bytes so far in hex, whether or not they could be written.
+  std::string hash() const;
 
  private:
   std::string line_of(const Event& event) const;

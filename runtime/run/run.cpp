@@ -98,9 +98,12 @@ void Run::after_cycle(const CycleRecord& cycle) {
   statistics_.after_cycle(cycle);
 }
 
-Outcome<RunSummary> Run::summarise(ByteCount bytes_loaded, std::uint64_t can_frames) {
-  auto hash = log_.finish();
-  if (!hash) return cannot_write(plan_.events, hash.error());
+Outcome<void> Run::close_events() {
+  if (const auto closed = log_.close(); !closed) return cannot_write(plan_.events, closed.error());
+  return {};
+}
+
+RunSummary Run::summarise(ByteCount bytes_loaded, std::uint64_t can_frames) const {
   RunSummary summary;
   statistics_.summarise(summary);
   const Cycle& cycle = switcher_->map().cycle;
@@ -110,7 +113,7 @@ Outcome<RunSummary> Run::summarise(ByteCount bytes_loaded, std::uint64_t can_fra
   summary.can_rejected = cycle.odometry_counters().rejected;
   summary.corrections_used = cycle.filter_counters().used;
   summary.corrections_rejected = cycle.filter_counters().rejected;
-  summary.event_log_hash = std::move(hash).value();
+  summary.event_log_hash = log_.hash();
   return summary;
 }
 

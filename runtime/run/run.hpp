@@ -91,8 +91,10 @@ class Run final : public EventSink {
   // ---- The end.
   // Records the end of the run as an event. Control.
   void end() noexcept { switcher_->map().cycle.finish(); }
-  // After the account has taken the last event. Fails when the event log cannot be written.
-  Outcome<RunSummary> summarise(ByteCount bytes_loaded, std::uint64_t can_frames);
+  // After the account has taken the last event.
+  RunSummary summarise(ByteCount bytes_loaded, std::uint64_t can_frames) const;
+  // Completes the event log's file; fails when it could not be written.
+  Outcome<void> close_events();
   // With the plan's keep_trace; once.
   RunTrace take_trace();
 

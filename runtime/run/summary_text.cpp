@@ -185,15 +185,15 @@ Outcome<void> check_limits(const RunSummary& summary) {
 }
 
 Outcome<void> write_summary(const RunSummary& summary, const std::string& json_path) {
-  if (json_path == "-") {
-    std::cout << summary_json(summary);
-    return {};
+  Failures failed;
+  const bool json_on_output = json_path == "-";
+  std::cout << (json_on_output ? summary_json(summary) : summary_table(summary)) << std::flush;
+  if (!std::cout) failed.add(failure("standard output: cannot be written", ErrorCode::kIo));
+  if (!json_on_output && !json_path.empty()) {
+    const auto written = write_file_atomically(json_path, summary_json(summary));
+    if (!written) failed.add(cannot_write(json_path, written.error()));
   }
-  std::cout << summary_table(summary);
-  if (json_path.empty()) return {};
-  const auto written = write_file_atomically(json_path, summary_json(summary));
-  if (!written) return cannot_write(json_path, written.error());
-  return {};
+  return failed.all();
 }
 
 }  // namespace zonepack

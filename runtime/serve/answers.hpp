@@ -21,7 +21,7 @@ struct ServerCounters {
   std::uint64_t requests = 0;
   std::uint64_t clients_refused = 0;  // there were too many
   std::uint64_t clients_dropped = 0;  // for not reading, or not saying hello
-  std::uint64_t throttled = 0;        // times that a client had used up its allowance
+  std::uint64_t throttled = 0;        // times that a request waited for its client's allowance
   std::uint64_t malformed = 0;        // bytes that were not a message
   std::uint64_t events_undelivered = 0;
   std::uint64_t not_keeping_up = 0;  // events of that kind

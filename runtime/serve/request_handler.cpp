@@ -2,16 +2,28 @@
 #include "runtime/serve/request_handler.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <utility>
 
+#include "platform/base/failure.hpp"
+#include "platform/bounded_writer.hpp"
 #include "platform/clock.hpp"
 #include "runtime/serve/external_pose.hpp"
 
 namespace zonepack {
 
 using wire::RequestBody;
+
+namespace {
+
+constexpr BoundedWriter::Terms kDumpTerms{};
+constexpr std::int64_t kDumpOverdue_ns =
+    std::chrono::nanoseconds(kDumpTerms.in_all + kDumpTerms.idle).count();
+
+}  // namespace
 
 RequestHandler::RequestHandler(const ServerPorts& ports, std::uint32_t requests_per_s,
                                ServerCounters& counters)
@@ -47,6 +59,9 @@ void RequestHandler::take(Session& from, LocalSocket::Received& received, Messag
 }
 
 void RequestHandler::greet(const Call& call) {
+  // The welcome carries descriptors, of which a user may have only so many on their way at once:
+  // one that repeats its hello without reading would use them up for all.
+  if (call.from.greeted) return refuse(call, wire::Fault::Malformed, "hello comes once");
   if (call.request.body_as_Hello()->version() != kProtocolVersion) {
     refuse(call, wire::Fault::Version,
            "this zoned speaks version " + std::to_string(kProtocolVersion));
@@ -62,7 +77,7 @@ void RequestHandler::greet(const Call& call) {
     descriptors.push_back(fd);
   };
   offer(wire::FdKind::Memory, ports_.memory_fd);
-  offer(wire::FdKind::Lock, ports_.lock_fd);
+  offer(wire::FdKind::Lock, ports_.presence_fd);
   const Catalog& catalog = call.map.catalog;
   std::uint64_t signatures = 0;
   for (const CatalogZone& zone : catalog.zones) signatures += zone.signatures;
@@ -279,23 +294,51 @@ void RequestHandler::start_dump(const Call& call) {
   if (dump_.running()) return refuse(call, wire::Fault::Busy, "another recording is being written");
   // Shared, because the job is copied on its way into the thread.
   auto file = std::make_shared<Descriptor>(std::move(call.received.descriptors[0]));
-  const auto started = dump_.start([file, write = ports_.dump] { return write(file->get()); });
+  dump_cancelled_.store(false);
+  dump_began_ns_ = call.monotonic_ns;
+  const auto started = dump_.start([this, file]() -> Result<std::uint64_t> {
+    BoundedWriter to(file->get(), dump_cancelled_, kDumpTerms);
+    return ports_.dump(to);
+  });
   if (!started) return refuse(call, wire::Fault::Failed, "no thread could be started");
   dump_client_ = call.from.key;
   dump_request_ = call.id();
 }
 
-std::optional<RequestHandler::Dump> RequestHandler::poll_dump() {
+std::optional<RequestHandler::Dump> RequestHandler::poll_dump(std::int64_t monotonic_ns) {
   auto result = dump_.poll();
-  if (!result) return std::nullopt;
-  return Dump{dump_client_, dump_request_, *result};
+  if (result) return Dump{dump_client_, dump_request_, *result};
+  // Only a client that undid O_NONBLOCK keeps the thread in a call for so long.
+  if (dump_.running() && monotonic_ns - dump_began_ns_ > kDumpOverdue_ns) end_dump();
+  return std::nullopt;
+}
+
+void RequestHandler::end_dump() noexcept {
+  dump_cancelled_.store(true);
+  dump_.interrupt();
+}
+
+bool RequestHandler::stop_dump(std::int64_t until_monotonic_ns) noexcept {
+  constexpr std::int64_t kStep_ns = 10'000'000;
+  while (dump_.running()) {
+    end_dump();
+    if (dump_.poll()) return true;
+    const std::int64_t now_ns = monotonic_ns();
+    if (now_ns >= until_monotonic_ns) return false;
+    sleep_until_ns(now_ns + kStep_ns);
+  }
+  return true;
 }
 
 void RequestHandler::deliver(Session& to, const Dump& dump) {
   MessageBuilder message;
   if (!dump.bytes) {
-    return to.answer(
-        message.fault(dump.request_id, wire::Fault::Failed, to_string(dump.bytes.error().code)));
+    const Error& error = dump.bytes.error();
+    const bool late = error.code == ErrorCode::kIo && error.detail == ETIMEDOUT;
+    const std::string text = late ? "the descriptor did not take the recording in time: nothing "
+                                    "for 10 s, or 120 s in all"
+                                  : reason_text(error);
+    return to.answer(message.fault(dump.request_id, wire::Fault::Failed, text));
   }
   to.answer(message.reply(dump.request_id, wire::CreateDumped(message.builder(), *dump.bytes)));
 }

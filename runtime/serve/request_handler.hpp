@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 #include "platform/local_socket.hpp"
@@ -36,7 +37,9 @@ class RequestHandler {
     std::uint64_t request_id = 0;
     Result<std::uint64_t> bytes;
   };
-  std::optional<Dump> poll_dump();
+  std::optional<Dump> poll_dump(std::int64_t monotonic_ns);
+  // Ends the writing of a recording, if one is under way; false when it has not ended in time.
+  bool stop_dump(std::int64_t until_monotonic_ns) noexcept;
   static void deliver(Session& to, const Dump& dump);
 
   bool busy() const noexcept { return router_.pending() > 0 || dump_.running(); }
@@ -72,7 +75,11 @@ class RequestHandler {
   CommandRouter router_;
   std::uint64_t dump_request_ = 0;
   CommandRouter::ClientKey dump_client_ = 0;
-  SlowJob dump_{"zoned-dump"};
+  void end_dump() noexcept;
+
+  std::atomic<bool> dump_cancelled_{false};
+  std::int64_t dump_began_ns_ = 0;  // CLOCK_MONOTONIC
+  SlowJob dump_{"zoned-dump"};      // destroyed first: it uses the above
 };
 
 }  // namespace zonepack

@@ -147,7 +147,9 @@ void Server::turn(int timeout_ms) {
   take_events();
   settle();
   for (auto& session : sessions_) {
-    if (session) session->refill(settings_.requests_per_s, now_ns_);
+    if (!session) continue;
+    counters_.throttled += session->begins_to_wait() ? 1 : 0;
+    session->refill(now_ns_);
   }
   for (const Poller::Ready& one : ready) {
     if (one.token < kFirstSession) {
@@ -219,7 +221,7 @@ void Server::settle() {
                                handler_.deliver(*session, settled);
                              }
                            });
-  if (const auto dump = handler_.poll_dump()) {
+  if (const auto dump = handler_.poll_dump(now_ns_)) {
     if (Session* const session = session_of(dump->client)) RequestHandler::deliver(*session, *dump);
   }
   counters_.leases = static_cast<std::uint32_t>(handler_.router().leases());
@@ -251,7 +253,8 @@ void Server::accept(std::size_t listener) {
       continue;
     }
     auto session = std::make_unique<Session>(std::move(socket).value(), ++last_key_,
-                                             listeners_[listener].looking_only, now_ns_);
+                                             listeners_[listener].looking_only,
+                                             settings_.requests_per_s, now_ns_);
     const auto token = static_cast<std::uint32_t>(place - sessions_.begin()) + kFirstSession;
     if (!poller_.add(session->socket.fd(), token, session->registered)) continue;
     *place = std::move(session);
@@ -274,7 +277,6 @@ void Server::receive(Session& session) {
     if (!received || received->bytes == 0) return session.drop();
     session.pay();
     handler_.take(session, *received, buffer.first(received->bytes), *map_, now_ns_);
-    if (!session.has_allowance()) ++counters_.throttled;
   }
 }
 

@@ -51,6 +51,12 @@ class Server {
   void run();
   void stop() noexcept;
 
+  // After the last turn: ends the writing of a recording that a client asked for; false when its
+  // thread has not ended by then, and the destructor would wait for it.
+  bool stop_dump(std::int64_t until_monotonic_ns) noexcept {
+    return handler_.stop_dump(until_monotonic_ns);
+  }
+
   // A map that the run is about to be offered, and its number there. It replaces the one in use
   // with its first event, and is forgotten at map_refused. Clients are notified; leases end. map()
   // is the one being served.

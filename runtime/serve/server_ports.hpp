@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "platform/base/result.hpp"
+#include "platform/bounded_writer.hpp"
 #include "platform/seqlock.hpp"
 #include "platform/spsc_queue.hpp"
 #include "runtime/control/command.hpp"
@@ -27,8 +28,8 @@ struct ServerPorts {
   SpscQueue<PoseCorrection>& poses;
 
   // What clients may map and hold, sent with the welcome; -1: there is none.
-  int memory_fd = -1;  // open for reading only
-  int lock_fd = -1;    // a share of the memory's lock
+  int memory_fd = -1;    // open for reading only
+  int presence_fd = -1;  // shows that a reader of the memory is left; releases nothing
 
   std::uint32_t map_epoch = 0;  // of the memory, with the first map; incremented at every change
 
@@ -37,9 +38,9 @@ struct ServerPorts {
   // Called when events were lost: what can be read now. Any thread.
   ResidentGeneration resident_generation{};
 
-  // Writes the recording of the last minutes to a descriptor and returns its bytes. May take long;
-  // called in a thread of its own. Empty: there is no recording.
-  std::function<Result<std::uint64_t>(int fd)> dump{};
+  // Writes the recording of the last minutes and returns its bytes. Takes as long as the writer
+  // allows; called in a thread of its own. Empty: there is no recording.
+  std::function<Result<std::uint64_t>(BoundedWriter& to)> dump{};
 
   const LineBoard* lines = nullptr;  // of the robot; null: none
 };

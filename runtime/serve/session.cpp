@@ -9,20 +9,28 @@
 namespace zonepack {
 
 Session::Session(LocalSocket socket_of_client, std::uint64_t key_of_client, bool looking,
-                 std::int64_t now_ns)
+                 std::uint32_t requests_per_s, std::int64_t now_ns)
     : socket(std::move(socket_of_client)),
       key(key_of_client),
       looking_only(looking),
       since_ns_(now_ns),
-      tokens_(1),
+      per_s_(requests_per_s),
+      most_tokens_(std::max(requests_per_s / 4.0, 1.0)),
+      tokens_(most_tokens_),
       refilled_ns_(now_ns) {
   if (!socket.limit_output(kKernelBytes)) dropped_ = true;
 }
 
-void Session::refill(std::uint32_t per_s, std::int64_t now_ns) noexcept {
-  const double most = std::max(per_s / 4.0, 1.0);
-  tokens_ = std::min(most, tokens_ + static_cast<double>(now_ns - refilled_ns_) * 1e-9 * per_s);
+void Session::refill(std::int64_t now_ns) noexcept {
+  const double seconds = static_cast<double>(now_ns - refilled_ns_) * 1e-9;
+  tokens_ = std::min(most_tokens_, tokens_ + seconds * per_s_);
   refilled_ns_ = now_ns;
+}
+
+bool Session::begins_to_wait() noexcept {
+  if (tokens_ >= 1) return waits_ = false;
+  if (waits_ || dropped_ || !socket.has_message()) return false;
+  return waits_ = true;
 }
 
 void Session::answer(std::span<const std::byte> message, std::span<const int> descriptors) {

@@ -26,13 +26,16 @@ class Session {
   static constexpr std::int64_t kPatience_ns = 10'000'000'000;
   static constexpr std::int64_t kHelloWithin_ns = 5'000'000'000;
 
-  Session(LocalSocket socket, std::uint64_t key, bool looking_only, std::int64_t now_ns);
+  // requests_per_s: what it may ask. A quarter of a second's worth is there from the start, and is
+  // the most that is saved up.
+  Session(LocalSocket socket, std::uint64_t key, bool looking_only, std::uint32_t requests_per_s,
+          std::int64_t now_ns);
 
-  // Requests cost tokens: `per_s` a second, of which at most a quarter of a second's worth is saved
-  // up.
-  void refill(std::uint32_t per_s, std::int64_t now_ns) noexcept;
+  void refill(std::int64_t now_ns) noexcept;
   bool may_ask() const noexcept { return tokens_ >= 1 && waiting_.empty() && !dropped_; }
-  bool has_allowance() const noexcept { return tokens_ >= 1; }
+  // Whether a request waits because the allowance is used up; true once for each such wait. Call
+  // before refill().
+  bool begins_to_wait() noexcept;
   void pay() noexcept { tokens_ -= 1; }
 
   // An answer: sent, or kept until there is room.
@@ -73,7 +76,10 @@ class Session {
   void send_away() noexcept { dropped_ = late_ = true; }
 
   const std::int64_t since_ns_;
-  double tokens_ = 0;
+  const double per_s_;
+  const double most_tokens_;
+  double tokens_;
+  bool waits_ = false;  // a request, for the allowance
   std::int64_t refilled_ns_ = 0;
   std::deque<std::vector<std::byte>> waiting_;
   std::size_t waiting_bytes_ = 0;

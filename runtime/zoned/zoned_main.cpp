@@ -3,6 +3,7 @@
 // `calibrate` in runtime/calibrate.
 #include <CLI/CLI.hpp>
 
+#include "platform/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/calibrate/calibrate_command.hpp"
 #include "runtime/live/can_source.hpp"
@@ -158,6 +159,7 @@ void add_calibrate(CLI::App& app, zonepack::CalibrateArguments& arguments, int& 
 // An exception that comes here is a bug: it stops the process.
 // NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
+  zonepack::outlive_file_limits();
   CLI::App app(
       "Keeps the rooms around a robot in memory, within a byte budget.\n"
       "Exit codes: 0 done, 1 the input or the world is bad, 2 usage.",

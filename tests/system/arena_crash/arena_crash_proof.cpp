@@ -49,7 +49,7 @@ Crashed crash(const MemoryGroup& group, const ArenaMemory::Source& source) {
     if (!group.join()) return;
     std::optional<ArenaMemory> arena(ArenaMemory::obtain(kArena, source).value());
     auto memory = arena->reader_memory();
-    const auto lock = arena->reader_lock();
+    const auto lock = arena->reader_presence();
     const pid_t reader = start([&] {
       arena.reset();
       const auto mapped = SharedMemory::map_read_only(std::move(memory).value());

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/memory/arena_memory.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -25,7 +28,7 @@ class ArenaMemoryOf : public testing::Test {
   // A process that maps the memory, as a reader does.
   pid_t attach_reader(const ArenaMemory& arena) {
     Descriptor memory = arena.reader_memory().value();
-    const Descriptor lock = arena.reader_lock().value();
+    const Descriptor presence = arena.reader_presence().value();
     const pid_t reader = fork();
     if (reader != 0) return reader;
     const auto mapped = SharedMemory::map_read_only(std::move(memory));
@@ -44,7 +47,7 @@ TEST_F(ArenaMemoryOf, AManagedZonedIsTheSameAfterACrashWithReadersAttached) {
   EXPECT_FALSE(first->taken_over());
   first->bytes()[5] = std::byte{77};
   const auto reader = SharedMemory::map_read_only(first->reader_memory().value());
-  const Descriptor readers_lock = first->reader_lock().value();
+  const Descriptor presence = first->reader_presence().value();
   std::vector<HandedFile> handed = manager.hand_over();
   first.reset();
 
@@ -66,8 +69,10 @@ TEST_F(ArenaMemoryOf, AnUnmanagedZonedIsRefusedWhileReadersHoldTheOldOne) {
   std::optional<ArenaMemory> first(ArenaMemory::obtain(kBytes, source).value());
   const pid_t reader = attach_reader(*first);
   first.reset();
-  EXPECT_EQ(ArenaMemory::obtain(kBytes, source).error().code, ErrorCode::kBusy);
-  EXPECT_NE(ArenaMemory::why_busy(source).find(source.lock_path), std::string::npos);
+  const auto refused = ArenaMemory::obtain(kBytes, source);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::kBusy);
+  EXPECT_NE(refused.error().message.find(ArenaMemory::readers_path(source)), std::string::npos);
   end(reader);
   const auto second = ArenaMemory::obtain(kBytes, source);
   ASSERT_TRUE(second.ok());
@@ -89,6 +94,60 @@ TEST_F(ArenaMemoryOf, AnotherSizeIsNotTakenOverButMadeWhenTheReadersAreGone) {
   auto second = ArenaMemory::obtain(2 * kBytes, source);
   ASSERT_TRUE(second.ok());
   EXPECT_EQ(second->bytes().size(), 2 * kBytes);
+}
+
+// Whatever a reader does to what it was handed, a second zoned stays out while the first runs, and
+// the presence of another reader still shows afterwards.
+TEST_F(ArenaMemoryOf, AReaderCanReleaseNothing) {
+  std::optional<ArenaMemory> first(ArenaMemory::obtain(kBytes, source).value());
+  const pid_t other = attach_reader(*first);
+  Descriptor memory = first->reader_memory().value();
+  Descriptor presence = first->reader_presence().value();
+  for (const Descriptor* const handed : {&memory, &presence}) {
+    flock(handed->get(), LOCK_UN);
+    struct flock all {};
+    all.l_type = F_UNLCK;
+    fcntl(handed->get(), F_SETLK, &all);
+    fcntl(handed->get(), F_OFD_SETLK, &all);
+  }
+  EXPECT_EQ(ArenaMemory::obtain(kBytes, source).error().code, ErrorCode::kBusy);
+  first.reset();
+  presence.close();
+  EXPECT_EQ(ArenaMemory::obtain(kBytes, source).error().code, ErrorCode::kBusy);
+  end(other);
+  EXPECT_TRUE(ArenaMemory::obtain(kBytes, source).ok());
+}
+
+TEST_F(ArenaMemoryOf, WhatTakesThePlaceOfItsFilesIsRefusedByName) {
+  const std::string target = folder / "target";
+  const auto refusal = [&] {
+    const auto arena = ArenaMemory::obtain(kBytes, source);
+    return arena ? std::string() : arena.error().message;
+  };
+  const std::string readers = ArenaMemory::readers_path(source);
+  const auto link_from = [&](const std::string& path) {
+    for (const std::string& own : {source.lock_path, readers}) unlink(own.c_str());
+    ASSERT_EQ(symlink(target.c_str(), path.c_str()), 0);
+  };
+  const auto expect_refused = [&](const std::string& path, const char* kind) {
+    const std::string message = refusal();
+    EXPECT_NE(message.find(path + ": is " + kind), std::string::npos) << message;
+    ASSERT_EQ(unlink(path.c_str()), 0);
+  };
+  ASSERT_EQ(mkfifo(source.lock_path.c_str(), 0600), 0);
+  expect_refused(source.lock_path, "a FIFO");
+  for (const std::string& path : {source.lock_path, readers}) {
+    link_from(path);
+    expect_refused(path, "a symbolic link");
+  }
+  ASSERT_EQ(mkfifo(target.c_str(), 0600), 0);
+  for (const std::string& path : {source.lock_path, readers}) {
+    link_from(path);
+    expect_refused(path, "a symbolic link");
+  }
+  close(open(readers.c_str(), O_CREAT | O_WRONLY, 0600));
+  expect_refused(readers, "a regular file");
+  EXPECT_EQ(refusal(), "");
 }
 
 }  // namespace

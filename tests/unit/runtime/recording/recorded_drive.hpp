@@ -137,7 +137,8 @@ class RecordedDrive {
     }
     cycle.finish();
     writer.flush();
-    const std::string hash = *log.finish();
+    ZP_REQUIRE(log.close().ok());
+    const std::string hash = log.hash();
     if (file != nullptr) {
       RecordingEnd end = writer.end();
       end.event_log_hash = hash;

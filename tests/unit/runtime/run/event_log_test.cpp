@@ -52,7 +52,7 @@ TEST_F(EventLogTest, WritesOneJsonObjectALineWithItsFieldsInOrder) {
   rejected.has_pose = true;
   rejected.x_mm = -5;
   log.on_event(rejected);
-  ASSERT_TRUE(log.finish().ok());
+  ASSERT_TRUE(log.close().ok());
   EXPECT_EQ(read(path),
             "{\"cycle\":7,\"t_ns\":70000000,\"event\":\"load_done\",\"zone\":\"ward \\\"A\\\"\","
             "\"signatures\":31,\"bytes\":32960,\"generation\":2,\"charged_signatures\":47,"
@@ -65,10 +65,9 @@ TEST_F(EventLogTest, HashesExactlyTheBytesOfTheFile) {
   EventLog log(name_of);
   ASSERT_TRUE(log.write_to(path).ok());
   for (int i = 0; i < 3000; ++i) log.on_event(load_done());  // more than one buffer
-  const auto hash = log.finish();
-  ASSERT_TRUE(hash.ok());
+  ASSERT_TRUE(log.close().ok());
   const std::string bytes = read(path);
-  EXPECT_EQ(*hash, to_hex(blake2b_32({std::as_bytes(std::span(bytes))})));
+  EXPECT_EQ(log.hash(), to_hex(blake2b_32({std::as_bytes(std::span(bytes))})));
 }
 
 TEST_F(EventLogTest, HashesTheSameWithoutAFile) {
@@ -76,12 +75,12 @@ TEST_F(EventLogTest, HashesTheSameWithoutAFile) {
   ASSERT_TRUE(with.write_to(path).ok());
   with.on_event(load_done());
   without.on_event(load_done());
-  EXPECT_EQ(*with.finish(), *without.finish());
+  EXPECT_EQ(with.hash(), without.hash());
 }
 
 TEST_F(EventLogTest, OfNothingHashesTheEmptyText) {
   // BLAKE2b-256 of no bytes, from the reference implementation.
-  EXPECT_EQ(*EventLog(name_of).finish(),
+  EXPECT_EQ(EventLog(name_of).hash(),
             "0e5751c026e543b2e8ab2eb06099daa1d1e5df47778f7787faab45cdf12fe3a8");
 }
 
