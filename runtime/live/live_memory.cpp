@@ -48,11 +48,7 @@ Outcome<std::unique_ptr<LiveMemory>> LiveMemory::open(const Choice& choice) {
   }
   if (!made->arena_) {
     auto own = SharedMemory::create("zoned-zones", shared_map_bytes(choice.zones, choice.slots));
-    if (!own) {
-      return failure("memory.budget: the memory cannot be had: " + reason_text(own.error()) +
-                         "; allow less, or end other programs",
-                     own.error().code);
-    }
+    if (!own) return ArenaMemory::no_memory(own.error());
     made->own_.emplace(std::move(*own));
   }
   auto map = SharedMap::lay_out(made->arena_ ? made->arena_->bytes() : made->own_->bytes(),

@@ -2,6 +2,7 @@
 #include "runtime/memory/arena_memory.hpp"
 
 #include <algorithm>
+#include <cerrno>
 
 #include "platform/file_kind.hpp"
 
@@ -83,15 +84,20 @@ Outcome<ArenaMemory> ArenaMemory::obtain(ByteCount bytes, const Source& source) 
   if (!readers && readers.error().code == ErrorCode::kBusy) return why_busy(source);
   if (!readers) return refused(readers_at, "a FIFO", readers.error());
   Result<SharedMemory> memory = SharedMemory::create(kMemoryName, bytes);
-  if (!memory) {
-    return failure("memory.budget: the memory cannot be had: " + reason_text(memory.error()) +
-                       "; allow less, or end other programs",
-                   memory.error().code);
-  }
+  if (!memory) return no_memory(memory.error());
   Result<void> kept = manager.keep(kMemoryName, memory->file());
   if (kept) kept = manager.keep(kLockName, lock->file());
   if (!kept) return unkept(kept.error());
   return ArenaMemory(std::move(*memory), std::move(*lock), std::move(*readers), false);
+}
+
+Failure ArenaMemory::no_memory(const Error& error) {
+  const bool limited = error.code == ErrorCode::kIo && error.detail == EFBIG;
+  return failure("memory.budget: the memory cannot be had: " + reason_text(error) +
+                     (limited ? "; the limit on the size of files (ulimit -f) counts for it too: "
+                                "raise that"
+                              : "; allow less, or end other programs"),
+                 error.code);
 }
 
 }  // namespace zonepack

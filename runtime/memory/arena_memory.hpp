@@ -35,6 +35,9 @@ class ArenaMemory {
   // kBusy: after `wait`, readers of an earlier zoned, or another zoned, still hold its memory.
   static Outcome<ArenaMemory> obtain(ByteCount bytes, const Source& source);
 
+  // Why memory for zones was refused, whether it is shared or not.
+  static Failure no_memory(const Error& error);
+
   std::span<std::byte> bytes() noexcept { return memory_.bytes(); }
   // True for the memory of an earlier zoned, with its content: SharedMap::lay_out() begins a new
   // epoch there.

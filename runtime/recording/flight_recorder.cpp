@@ -41,7 +41,12 @@ Result<void> make_folder(const std::string& folder) {
 }
 
 Result<AppendFile> make_file(const std::string& folder, bool named, const std::string& name) {
-  return named ? AppendFile::create(folder + "/" + name) : AppendFile::create_unnamed(folder);
+  if (!named) return AppendFile::create_unnamed(folder);
+  // What another program put there, a link above all, is not written to.
+  const std::string path = folder + "/" + name;
+  std::error_code none;
+  fs::remove(path, none);
+  return AppendFile::create(path);
 }
 
 Result<void> copy(const AppendFile& from, std::uint64_t size, BoundedWriter& to) {
@@ -82,7 +87,7 @@ Result<std::unique_ptr<FlightRecorder>> FlightRecorder::open(const std::string& 
 
 bool FlightRecorder::wants_segment() const noexcept {
   const std::lock_guard lock(mutex_);
-  return broken_ || segments_.back()->file.size() >= segment_bytes_;
+  return broken_ || segments_.back()->file.size() >= segment_bytes_ || maps_.size() > kMostMaps;
 }
 
 void FlightRecorder::fail(Error error) {
@@ -101,15 +106,35 @@ void FlightRecorder::drop_oldest() {
 }
 
 // A map is needed by what follows its offer, and by segments that begin while it is in use.
+bool FlightRecorder::needs(const Segment& segment, const Map& map) const noexcept {
+  return map.cycle >= segment.first_cycle || map.number == segment.map;
+}
+
 void FlightRecorder::drop_unused_maps() {
   if (segments_.empty()) return;
   const Segment& oldest = *segments_.front();
   std::erase_if(maps_, [&](const std::shared_ptr<Map>& map) {
-    if (map->cycle >= oldest.first_cycle || map->number == oldest.map) return false;
+    if (needs(oldest, *map)) return false;
     std::error_code ignored;
     if (!map->path.empty()) fs::remove(map->path, ignored);
     return true;
   });
+}
+
+// The oldest segments go, with the maps that nothing else needs, until all is within its bounds.
+void FlightRecorder::make_room() {
+  const auto kept = [this] {
+    ByteCount bytes = segment_bytes_;  // the newest, when it is full
+    for (const auto& map : maps_) bytes += map->file.size();
+    for (std::size_t i = 0; i + 1 < segments_.size(); ++i) {
+      bytes += std::min<ByteCount>(segments_[i]->file.size(), segment_bytes_);
+    }
+    return bytes;
+  };
+  while (segments_.size() > 1 && (maps_.size() > kMostMaps || kept() > bytes_)) {
+    drop_oldest();
+    drop_unused_maps();
+  }
 }
 
 void FlightRecorder::add_map(std::uint32_t number, ByteSpan blocks, std::uint64_t cycle) {
@@ -122,6 +147,7 @@ void FlightRecorder::add_map(std::uint32_t number, ByteSpan blocks, std::uint64_
   if (const auto written = map->file.append(blocks); !written) return fail(written.error());
   map->file.settle();
   maps_.push_back(std::move(map));
+  make_room();
 }
 
 void FlightRecorder::begin_segment(const Checkpoint& checkpoint, bool after_gap) {
@@ -139,6 +165,7 @@ void FlightRecorder::begin_segment(const Checkpoint& checkpoint, bool after_gap)
   const Result<void> written = segment->file.append(block);
   segments_.push_back(std::move(segment));
   drop_unused_maps();
+  make_room();
   if (!written) return fail(written.error());
   next_cycle_ = checkpoint.cycle;
   broken_ = false;

@@ -30,14 +30,19 @@ class FlightRecorder {
  public:
   static constexpr std::uint64_t kSegments = 8;
   static constexpr ByteCount kLeastBytes = kSegments * AppendFile::kSettleBytes;
+  // Maps that were offered, each with a file and a descriptor. Beyond it, the oldest goes with the
+  // segments that need it.
+  static constexpr std::size_t kMostMaps = 8;
 
-  // Keeps at most `bytes` of cycles in files named in `folder` (created when missing; its own old
+  // Keeps at most `bytes` of cycles and offered maps, never less than the newest segment and what
+  // it needs, in files named in `folder` (created when missing; its own old
   // files are moved), or without names in `folder` when `named` is false. kIo with errno.
   static Result<std::unique_ptr<FlightRecorder>> open(const std::string& folder, bool named,
                                                       ByteCount bytes,
                                                       const RecordingPreface& preface);
 
-  // Whether the next block should begin a segment. After an error it should.
+  // Whether the next block should begin a segment: after an error, and when more maps were offered
+  // than one may keep, too.
   bool wants_segment() const noexcept;
   // Begins a segment. After a gap, what precedes it is no longer part of a dump.
   void begin_segment(const Checkpoint& checkpoint, bool after_gap);
@@ -83,16 +88,20 @@ class FlightRecorder {
   FlightRecorder(std::string folder, bool named, ByteCount bytes, AppendFile preface)
       : folder_(std::move(folder)),
         named_(named),
+        bytes_(bytes),
         segment_bytes_(bytes / kSegments),
         preface_(std::move(preface)) {}
 
   void fail(Error error);
   void drop_oldest();
   void drop_unused_maps();
+  bool needs(const Segment& segment, const Map& map) const noexcept;
+  void make_room();
   std::deque<std::shared_ptr<Segment>> whole_segments() const;
 
   std::string folder_;
   bool named_;
+  ByteCount bytes_;
   ByteCount segment_bytes_;
   AppendFile preface_;
   mutable std::mutex mutex_;  // guards what follows

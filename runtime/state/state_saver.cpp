@@ -2,6 +2,7 @@
 #include "runtime/state/state_saver.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -77,8 +78,10 @@ void StateSaver::save(const StateGlimpse& glimpse) {
   }
   ++failures_;
   if (std::exchange(failing_, true)) return;
-  report_(store_.folder() +
-          ": state cannot be saved: " + std::strerror(static_cast<int>(done.error().detail)) +
+  const bool taken = done.error().detail == EEXIST;
+  report_(store_.folder() + ": state cannot be saved: " +
+          (taken ? "state-0 and state-1 are not regular files"
+                 : std::strerror(static_cast<int>(done.error().detail))) +
           "; after a restart the robot would not know where it is; make room there, or set "
           "state.folder to a folder that can be written");
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/state/state_store.hpp"
 
+#include <cerrno>
 #include <filesystem>
 
 #include "platform/atomic_file.hpp"
+#include "platform/file_kind.hpp"
 #include "platform/storage.hpp"
 
 namespace zonepack {
@@ -19,6 +21,12 @@ StateStore::Found StateStore::load(const Digest16& map_lineage) {
   std::uint64_t newest = 0;
   for (const unsigned place : {0u, 1u}) {
     const std::string path = path_of(place);
+    if (const auto other = not_a_regular_file(path)) {
+      found.notes.push_back(path + ": is " + *other +
+                            "; expected a file of zoned's own, or nothing: nothing is saved there; "
+                            "remove it");
+      continue;
+    }
     const auto file = read_file(path, kMostStateBytes);
     if (!file && file.error().code == ErrorCode::kNotFound) continue;
     auto state = file ? read_state(*file) : Result<SavedState>(file.error());
@@ -45,6 +53,9 @@ StateStore::Found StateStore::load(const Digest16& map_lineage) {
 }
 
 Result<void> StateStore::save(SavedState state) {
+  // A link would be followed, a pipe waited for.
+  if (not_a_regular_file(path_of(next_place_))) next_place_ = 1 - next_place_;
+  if (not_a_regular_file(path_of(next_place_))) return {ErrorCode::kIo, EEXIST};
   state.sequence = next_sequence_;
   const std::vector<std::byte> bytes = write_state(state);
   const auto saved = write_file_atomically(

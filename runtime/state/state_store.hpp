@@ -11,7 +11,8 @@ namespace zonepack {
 
 // Two files in a folder, state-0 and state-1, of which the older one is replaced each time, by
 // rename: power may fail at any moment, and if a file is lost or torn anyway, the one saved before
-// it is still there.
+// it is still there. Something other than a regular file under one of the names, a link too, is
+// neither read nor written to: the other one serves alone, or saving fails with EEXIST.
 // Threads: one at a time; not for the control thread.
 class StateStore {
  public:

@@ -52,7 +52,7 @@ ARROWS = {
                      " runtime/recording runtime/replay runtime/report",
     "runtime/ctl/commands": "platform platform/base runtime/control runtime/odometry runtime/pack_format/file"
                             " runtime/protocol runtime/serve runtime/settings",
-    "runtime/ctl": "platform/version runtime/ctl/commands runtime/protocol",
+    "runtime/ctl": "platform/signals.hpp platform/version runtime/ctl/commands runtime/protocol",
 
     "packer/record": "",
     "packer/sources": "packer/record platform/base",
@@ -70,7 +70,7 @@ ARROWS = {
     "packer/commands": "packer/build packer/console packer/decode packer/export packer/inspect packer/outline"
                        " packer/sources packer/verify packer/zones platform platform/base runtime/pack_format"
                        " runtime/pack_format/file runtime/report",
-    "packer": "packer/commands platform/version runtime/pack_format/file",
+    "packer": "platform/signals.hpp packer/commands platform/version runtime/pack_format/file",
 }
 
 GPIOD = r"gpiod\.h"

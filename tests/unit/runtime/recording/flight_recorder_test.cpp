@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <random>
 
 #include "runtime/recording/flight_names.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -159,6 +161,50 @@ TEST_F(FlightRecorderTest, KeepsItsBytesAndForgetsTheOldest) {
   }
   EXPECT_TRUE(reader->complete());
   EXPECT_EQ(reader->cycles_read(), 300u);
+}
+
+// Reloads without end, each offering a map of 300 kB, most of them refused: descriptors, files and
+// bytes stay within their bounds, and what is kept can be replayed.
+TEST_F(FlightRecorderTest, BoundsTheMapsOfReloads) {
+  const auto descriptors = [] {
+    return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
+  };
+  const ByteCount limit = 4 * kMiB;
+  auto flight = FlightRecorder::open(path("flight"), true, limit, drive.preface());
+  ASSERT_TRUE(flight.ok());
+  const auto before = descriptors();
+  std::mt19937_64 random(1);
+  std::vector<std::byte> manifest(300'000);
+  for (std::byte& byte : manifest) byte = static_cast<std::byte>(random());
+  std::uint64_t cycle = 0;
+  for (std::uint32_t number = 2; number < 60; ++number) {
+    append(**flight, cycle++);
+    (*flight)->add_map(number, write_map({number, "maps", manifest}), cycle);
+    append(**flight, cycle++);
+    if (number % 10 == 0) map = number;
+    EXPECT_LE((*flight)->kept_bytes(), limit + 8 * 65'000 + 310'000);
+    // Preface, segments, maps, and the map that makes the next segment begin.
+    const std::size_t most = 1 + FlightRecorder::kSegments + FlightRecorder::kMostMaps + 1;
+    EXPECT_LE(flight_files(path("flight")).size(), most);
+    EXPECT_LE(static_cast<std::size_t>(descriptors() - before), most);
+  }
+  ASSERT_TRUE((*flight)->dump(path("dump.zpr")).ok());
+  auto reader = RecordingReader::open(path("dump.zpr"));
+  ASSERT_TRUE(reader.ok()) << reader.error().message;
+  EXPECT_NE(reader->map(50), nullptr) << "in use";
+  EXPECT_NE(reader->map(59), nullptr) << "offered last";
+}
+
+// A link or a pipe in the place of one of its files is replaced; a link's target stays as it was.
+TEST_F(FlightRecorderTest, FollowsNoLinkInItsFolder) {
+  fs::create_directories(path("flight"));
+  std::ofstream(path("target")) << "precious";
+  fs::create_symlink(path("target"), path("flight/segment-0000000000"));
+  auto flight = FlightRecorder::open(path("flight"), true, kMiB, drive.preface());
+  ASSERT_TRUE(flight.ok());
+  append(**flight, 0);
+  EXPECT_EQ(text_of(path("target")), "precious");
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(path("flight/segment-0000000000"))));
 }
 
 TEST_F(FlightRecorderTest, KeepsTheFilesOfTheRunBefore) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <sstream>
 
 #include "runtime/state/state_saver.hpp"
 #include "runtime/state/state_store.hpp"
@@ -87,6 +90,25 @@ TEST_F(StateStoreTest, FindsTheNewestOfTwoAndFallsBackToTheOneBefore) {
   EXPECT_EQ(load().state->T_map_base.x_m, 6);
   fs::remove(folder / "state-0");
   EXPECT_EQ(load().state->T_map_base.x_m, 4);
+}
+
+TEST_F(StateStoreTest, NeitherFollowsALinkNorWaitsForAPipe) {
+  std::ofstream(folder / "target") << "precious";
+  fs::create_symlink(folder / "target", folder / "state-0");
+  StateStore store(folder.path());
+  EXPECT_THAT(store.load(somewhere().map_lineage).notes,
+              ElementsAre(HasSubstr("state-0: is a symbolic link; expected a file")));
+  for (double x_m = 1; x_m <= 3; ++x_m) EXPECT_TRUE(store.save(somewhere(x_m)).ok());
+  EXPECT_EQ(load().state->T_map_base.x_m, 3) << "by state-1 alone";
+  fs::remove(folder / "state-1");
+  ASSERT_EQ(mkfifo((folder / "state-1").c_str(), 0600), 0);
+  EXPECT_THAT(store.load(somewhere().map_lineage).notes,
+              ElementsAre(HasSubstr("state-0: is a symbolic link"),
+                          HasSubstr("state-1: is a FIFO; expected a file")));
+  EXPECT_EQ(store.save(somewhere()).error(), (Error{ErrorCode::kIo, EEXIST}));
+  std::ostringstream target;
+  target << std::ifstream(folder / "target").rdbuf();
+  EXPECT_EQ(target.str(), "precious");
 }
 
 TEST_F(StateStoreTest, RefusesAStateOfAnotherMapAndReplacesIt) {
