@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <span>
 
 namespace zonepack {
 namespace {
@@ -23,6 +24,9 @@ bool CanLogReader::start() {
   summary_.interface = interface_;
   end_ = false;
   relative_ = false;
+  given_ = false;
+  added_ns_ = 0;
+  rhythm_count_ = 0;
   file_.reset(std::fopen(path_.c_str(), "rb"));
   if (file_) refill();
   return file_ != nullptr;
@@ -138,10 +142,48 @@ bool CanLogReader::is_stray(const Item& item) const noexcept {
   return item.frame.stamp_ns - ahead_[(first_ + 1) % kAhead].frame.stamp_ns > kStray_ns;
 }
 
+// Of a step back, the frame behind this one must know too: a single early stamp is disorder.
+bool CanLogReader::clock_was_set_before(const Item& item) const noexcept {
+  if (!given_) return false;
+  if (item.frame.stamp_ns - latest_ns_ > kLongestSilence_ns) return true;
+  const auto early = [this](const Item& one) {
+    return latest_ns_ - one.frame.stamp_ns > kMostDisorder_ns;
+  };
+  return early(item) && count_ > 1 && early(ahead_[(first_ + 1) % kAhead]);
+}
+
+// Makes the frame come one period after the last of its id, and not before any other.
+void CanLogReader::bridge(const Item& item) noexcept {
+  ++summary_.clock_steps;
+  if (summary_.steps.size() < kMostFaults) {
+    summary_.steps.push_back({item.line, latest_ns_, item.frame.stamp_ns});
+  }
+  std::int64_t arrival_ns = latest_ns_ + added_ns_;
+  const CanId id{item.frame.id, item.frame.extended};
+  for (const Rhythm& rhythm : std::span(rhythms_).first(rhythm_count_)) {
+    if (rhythm.id == id) arrival_ns = std::max(arrival_ns, rhythm.last_ns + rhythm.period_ns);
+  }
+  added_ns_ = arrival_ns - item.frame.stamp_ns;
+  latest_ns_ = item.frame.stamp_ns;
+}
+
+void CanLogReader::note_arrival(const CanFrame& frame) noexcept {
+  const CanId id{frame.id, frame.extended};
+  const auto known = std::span(rhythms_).first(rhythm_count_);
+  const auto found = std::ranges::find(known, id, &Rhythm::id);
+  if (found != known.end()) {
+    found->period_ns = std::max<std::int64_t>(0, frame.stamp_ns - found->last_ns);
+    found->last_ns = frame.stamp_ns;
+  } else if (rhythm_count_ < kMostRhythms) {
+    rhythms_[rhythm_count_++] = {id, frame.stamp_ns, 0};
+  }
+}
+
 std::optional<CanFrame> CanLogReader::next() noexcept {
   while (count_ > 0) {
-    const Item item = ahead_[first_];
+    Item item = ahead_[first_];
     const bool stray = is_stray(item);
+    if (!stray && clock_was_set_before(item)) bridge(item);
     first_ = (first_ + 1) % kAhead;
     --count_;
     if (count_ < 2) refill();
@@ -156,6 +198,8 @@ std::optional<CanFrame> CanLogReader::next() noexcept {
     dropped_before_ = item.dropped;
     ++summary_.frames;
     if (item.frame.error) ++summary_.error_frames;
+    item.frame.stamp_ns += added_ns_;
+    note_arrival(item.frame);
     return item.frame;
   }
   return std::nullopt;

@@ -8,6 +8,8 @@
 #include "platform/atomic_file.hpp"
 #include "platform/can_log.hpp"
 #include "runtime/odometry/det_math.hpp"
+#include "runtime/run/log_faults.hpp"
+#include "runtime/run/log_time.hpp"
 
 namespace zonepack {
 namespace {
@@ -96,11 +98,13 @@ Outcome<void> calibrate_and_report(const CalibrateArguments& arguments) {
   const auto settings = usable_settings(arguments.config);
   if (!settings) return settings.error();
   const OdometrySettings& odometry = settings->odometry;
-  const auto truth = read_truth(arguments.truth);
-  if (!truth) return truth.error();
+  const auto as_written = read_truth(arguments.truth);
+  if (!as_written) return as_written.error();
   const auto steps = read_wheel_steps(*settings, arguments.can);
   if (!steps) return steps.error();
-  const auto result = calibrate(*steps, *truth, odometry.wheels);
+  const TruthTrack truth =
+      LogTime::read(arguments.can, settings->can.interface).on_first_clock(*as_written);
+  const auto result = calibrate(*steps, truth, odometry.wheels);
   if (!result) {
     return failure(arguments.can + " with " + arguments.truth + ": " + result.error().message);
   }
@@ -148,6 +152,7 @@ Outcome<std::vector<WheelStep>> read_wheel_steps(const Settings& settings, const
     steps.push_back({increment->from_ns, increment->to_ns, forward - turn * half_track,
                      forward + turn * half_track, known});
   }
+  tell_log_faults(can, log.summary());
   if (steps.empty()) {
     return failure(can +
                    ": holds none of the frames that odometry reads, or fewer than two; check "

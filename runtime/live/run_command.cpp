@@ -14,6 +14,7 @@
 #include "runtime/live/live_run.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 #include "runtime/run/log_faults.hpp"
+#include "runtime/run/log_time.hpp"
 #include "runtime/run/summary_text.hpp"
 
 namespace zonepack {
@@ -130,6 +131,12 @@ Outcome<void> run_and_report(const RunArguments& arguments) {
   use_one_heap(kHeapBytes);
   auto inputs = read_run_inputs(arguments);
   if (!inputs) return inputs.error();
+  if (arguments.source.kind == CanSourceChoice::Kind::kLog &&
+      (!inputs->corrections.empty() || inputs->truth)) {
+    const LogTime time = LogTime::read(arguments.source.name, inputs->settings.can.interface);
+    inputs->corrections = time.on_first_clock(std::move(inputs->corrections));
+    if (inputs->truth) inputs->truth = time.on_first_clock(*inputs->truth);
+  }
   EndGuard guard({socket_path(inputs->settings.serve), inputs->settings.serve.looking_socket});
   return drive(arguments, *inputs, handed, guard);
 }

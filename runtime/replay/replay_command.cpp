@@ -11,6 +11,7 @@
 #include "runtime/replay/replay.hpp"
 #include "runtime/run/baseline.hpp"
 #include "runtime/run/log_faults.hpp"
+#include "runtime/run/log_time.hpp"
 #include "runtime/run/run_report.hpp"
 #include "runtime/run/summary_text.hpp"
 
@@ -104,6 +105,11 @@ Outcome<void> replay_log(const ReplayArguments& arguments) {
   CanLogReader log(arguments.can, inputs->settings.can.interface);
   if (const auto opened = log.open(); !opened) {
     return failure(log.explain(opened.error()), opened.error().code);
+  }
+  if (!inputs->corrections.empty() || inputs->truth) {
+    const LogTime time = LogTime::read(arguments.can, inputs->settings.can.interface);
+    inputs->corrections = time.on_first_clock(std::move(inputs->corrections));
+    if (inputs->truth) inputs->truth = time.on_first_clock(*inputs->truth);
   }
   auto result = replay(replay_input(arguments, *inputs, log));
   tell_log_faults(arguments.can, log.summary());

@@ -7,7 +7,7 @@
 
 namespace zonepack {
 
-// Tells what was wrong with a CAN log, on standard error.
+// Says on standard error what was wrong with a CAN log, and where its clock was set.
 void tell_log_faults(const std::string& path, const CanLogSummary& summary);
 
 }  // namespace zonepack

@@ -9,6 +9,13 @@ namespace {
 constexpr double kWrongDepth_m = 0.3;
 constexpr double kSamplePeriod_s = 0.0999;  // ten a second, rounding aside
 
+// Keeps the first of every two.
+template <typename T>
+void halve(std::vector<T>& all) {
+  for (std::size_t i = 1; 2 * i < all.size(); ++i) all[i] = std::move(all[2 * i]);
+  all.resize((all.size() + 1) / 2);
+}
+
 // The value that this share of all is not above (nearest rank).
 double percentile(const std::vector<float>& sorted, double share) {
   const auto rank = static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5);
@@ -30,7 +37,8 @@ RunStatistics::RunStatistics(const ZoneGraph& graph, std::span<const ZoneNeed> n
       truth_(truth),
       period_ns_(period_ns),
       limits_(limits),
-      held_(needs.size(), Held::kNot) {}
+      held_(needs.size(), Held::kNot),
+      sample_period_s_(kSamplePeriod_s) {}
 
 void RunStatistics::change_map(const ZoneGraph& graph, std::span<const ZoneNeed> needs,
                                const ResidencyLimits& limits) {
@@ -61,9 +69,13 @@ void RunStatistics::begin_with(ZoneId zone) noexcept {
 }
 
 void RunStatistics::on_event(const Event& event) noexcept {
-  if (keeps_trace_) {
+  if (keeps_trace_ && events_seen_++ % event_stride_ == 0) {
     trace_.events.push_back(
         {static_cast<double>(event.t_ns) * 1e-9, to_string(event.kind), drawn(event.zone)});
+    if (trace_.events.size() >= kMostTraceEvents) {
+      halve(trace_.events);
+      event_stride_ *= 2;
+    }
   }
   switch (event.kind) {
     case EventKind::kLoadStarted:
@@ -94,10 +106,18 @@ void RunStatistics::after_cycle(const CycleRecord& cycle) {
   blocked_cycles_ += cycle.state.blocked;
   if (true_pose_ && cycle.state.pose.valid) {
     const Pose2 &truth = *true_pose_, &estimate = cycle.state.pose.T_map_base;
-    errors_m_.push_back(static_cast<float>(
-        distance_m(Point2{truth.x_m, truth.y_m}, Point2{estimate.x_m, estimate.y_m})));
+    keep_error(distance_m(Point2{truth.x_m, truth.y_m}, Point2{estimate.x_m, estimate.y_m}));
   }
   if (keeps_trace_) keep_sample(cycle);
+}
+
+void RunStatistics::keep_error(double error_m) {
+  worst_error_m_ = std::max(worst_error_m_, static_cast<float>(error_m));
+  if (errors_seen_++ % error_stride_ != 0) return;
+  errors_m_.push_back(static_cast<float>(error_m));
+  if (errors_m_.size() < kMostErrors) return;
+  halve(errors_m_);
+  error_stride_ *= 2;
 }
 
 void RunStatistics::check_limits(const CycleRecord& cycle) {
@@ -159,9 +179,25 @@ void RunStatistics::keep_sample(const CycleRecord& cycle) {
                       last.charged_signatures == sample.charged_signatures &&
                       last.signatures_loaded == sample.signatures_loaded &&
                       last.signatures_unloaded == sample.signatures_unloaded;
-    if (same && sample.t_s - last.t_s < kSamplePeriod_s) return;
+    if (same && sample.t_s - last.t_s < sample_period_s_) return;
   }
   trace_.samples.push_back(sample);
+  if (trace_.samples.size() >= kMostSamples) thin_samples();
+}
+
+void RunStatistics::thin_samples() {
+  const auto worse = [](const TraceSample& a, const TraceSample& b) {
+    const bool a_trouble = a.zone_absent || a.blocked, b_trouble = b.zone_absent || b.blocked;
+    return a_trouble != b_trouble ? a_trouble : a.charged_bytes > b.charged_bytes;
+  };
+  std::vector<TraceSample>& all = trace_.samples;
+  std::size_t kept = 1;  // the first stays: drawings begin with it
+  for (std::size_t i = 1; i + 1 < all.size(); i += 2) {
+    all[kept++] = worse(all[i + 1], all[i]) ? all[i + 1] : all[i];
+  }
+  if (all.size() % 2 == 0) all[kept++] = all.back();
+  all.resize(kept);
+  sample_period_s_ *= 2;
 }
 
 double RunStatistics::seconds(std::uint64_t cycles) const noexcept {
@@ -188,7 +224,7 @@ void RunStatistics::summarise(RunSummary& summary) const {
     std::vector<float> sorted = errors_m_;
     std::sort(sorted.begin(), sorted.end());
     summary.pose_error_m = PoseError{percentile(sorted, 0.5), percentile(sorted, 0.95),
-                                     static_cast<double>(sorted.back())};
+                                     static_cast<double>(worst_error_m_)};
   }
 }
 

@@ -35,9 +35,16 @@ CycleRecord record_of(std::int64_t now_ns, const CycleState& state, const Reside
 // that is on no zone's ground), or the tracker's where there is no truth.
 //
 // Threads: one.
-// Memory: allocates; bounded by zones and cycles without a trace, grows with the run with one.
+// Memory: allocates; bounded by zones and the constants below, however long the run.
 class RunStatistics final : public EventSink {
  public:
+  // A longer run keeps every second of what it has, then less and less often: 12 MB of samples and
+  // 2 MB of events for drawing, 4 MB of position errors. Of two samples, the one that shows trouble
+  // or charges more stays.
+  static constexpr std::size_t kMostSamples = 60'000;
+  static constexpr std::size_t kMostTraceEvents = 20'000;
+  static constexpr std::size_t kMostErrors = 1'000'000;
+
   // truth may be null; everything must outlive this object.
   RunStatistics(const ZoneGraph& graph, std::span<const ZoneNeed> needs, const TruthTrack* truth,
                 std::int64_t period_ns, const ResidencyLimits& limits);
@@ -58,8 +65,7 @@ class RunStatistics final : public EventSink {
   // Fills the parts that are known here.
   void summarise(RunSummary& summary) const;
 
-  // Without keep_trace() before the run, empty: a trace grows with the run, which a robot has no
-  // memory for.
+  // Without keep_trace() before the run, empty: a robot has no memory for it.
   void keep_trace() noexcept { keeps_trace_ = true; }
   RunTrace take_trace() { return std::move(trace_); }
 
@@ -68,7 +74,9 @@ class RunStatistics final : public EventSink {
 
   void check_limits(const CycleRecord& cycle);
   void watch_zone(const CycleRecord& cycle);
+  void keep_error(double error_m);
   void keep_sample(const CycleRecord& cycle);
+  void thin_samples();
   ZoneId drawn(ZoneId zone) const noexcept;
   double seconds(std::uint64_t cycles) const noexcept;
 
@@ -94,6 +102,10 @@ class RunStatistics final : public EventSink {
   ByteCount peak_bytes_ = 0;
   ResidencyCounters counters_;
   std::vector<float> errors_m_;
+  float worst_error_m_ = 0;
+  std::uint64_t error_stride_ = 1, errors_seen_ = 0;  // every error_stride_-th is kept
+  std::uint64_t event_stride_ = 1, events_seen_ = 0;
+  double sample_period_s_;
   bool keeps_trace_ = false;
   RunTrace trace_;
 };

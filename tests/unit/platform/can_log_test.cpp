@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -95,6 +96,69 @@ TEST_F(CanLog, LeavesOutASingleStampFarInTheFuture) {
   EXPECT_EQ(reader.summary().stray_stamps, 1u);
   EXPECT_EQ(reader.summary().faults.at(0).line, 2u);
   EXPECT_EQ(reader.summary().unsorted_stamps, 0u);
+}
+
+// A clock that starts in 1970 and is set, one that is set back by hours, and one that is set by
+// seconds: frames keep coming at their period of 20 ms, pairs 0.2 ms apart.
+TEST_F(CanLog, BridgesTheStepsOfItsClock) {
+  struct Case {
+    double from_s, to_s;
+  };
+  for (const auto& [from_s, to_s] : {Case{10, 1718021606}, Case{1718021606, 10},
+                                     Case{20'000, 9'000}, Case{100, 97}, Case{100, 112}}) {
+    std::string text;
+    for (int i = 0; i < 200; ++i) {
+      const double s = (i < 100 ? from_s : to_s) + i * 0.02;
+      char line[160];
+      std::snprintf(line, sizeof line, "(%.6f) can0 221#00\n(%.6f) can0 311#00\n", s, s + 0.0002);
+      text += line;
+    }
+    write(text);
+    CanLogReader reader(path_);
+    ASSERT_TRUE(reader.open().ok());
+    const auto start_ns = static_cast<std::int64_t>(from_s * 1e9);
+    for (int i = 0; i < 200; ++i) {
+      EXPECT_NEAR(static_cast<double>(reader.next()->stamp_ns - start_ns), i * 2e7, 2000) << i;
+      EXPECT_NEAR(static_cast<double>(reader.next()->stamp_ns - start_ns), i * 2e7 + 2e5, 2000);
+    }
+    const CanLogSummary& summary = reader.summary();
+    EXPECT_EQ(summary.clock_steps, 1u) << from_s << " to " << to_s;
+    ASSERT_EQ(summary.steps.size(), 1u);
+    EXPECT_EQ(summary.steps[0].line, 201u);
+    EXPECT_NEAR(static_cast<double>(summary.steps[0].before_ns), (from_s + 1.9802) * 1e9, 2000);
+    EXPECT_NEAR(static_cast<double>(summary.steps[0].after_ns), (to_s + 2) * 1e9, 2000);
+    EXPECT_EQ(summary.unsorted_stamps + summary.stray_stamps, 0u);
+  }
+}
+
+TEST_F(CanLog, TakesSilenceForSilenceAndOneEarlyStampForDisorder) {
+  write("(10.0) can0 001#\n(19.9) can0 002#\n(12.0) can0 003#\n(20.0) can0 004#\n");
+  CanLogReader reader(path_);
+  ASSERT_TRUE(reader.open().ok());
+  for (const double s : {10.0, 19.9, 12.0, 20.0}) {
+    EXPECT_EQ(reader.next()->stamp_ns, static_cast<std::int64_t>(s * 1e9));
+  }
+  EXPECT_EQ(reader.summary().clock_steps, 0u);
+  EXPECT_EQ(reader.summary().unsorted_stamps, 1u);
+}
+
+TEST_F(CanLog, BoundsWhatItKeepsOfAClockThatIsSetAgainAndAgain) {
+  std::string text;
+  for (int i = 0; i < 10'000; ++i) {
+    const std::string second = std::to_string(i / 10 % 2 == 0 ? 100 : 2'000'000'000);
+    text += "(" + second + "." + std::to_string(i % 10) + ") can0 001#00\n";
+  }
+  write(text);
+  CanLogReader reader(path_);
+  ASSERT_TRUE(reader.open().ok());
+  std::int64_t last_ns = 0;
+  while (const auto frame = reader.next()) {
+    EXPECT_GE(frame->stamp_ns, last_ns);
+    last_ns = frame->stamp_ns;
+  }
+  EXPECT_EQ(last_ns, 100'000'000'000 + 9'999 * 100'000'000LL);  // at their period of 0.1 s
+  EXPECT_EQ(reader.summary().clock_steps, 999u);
+  EXPECT_EQ(reader.summary().steps.size(), CanLogReader::kMostFaults);
 }
 
 TEST_F(CanLog, ReadsStampsFromZeroAndRefusesTimeDifferences) {

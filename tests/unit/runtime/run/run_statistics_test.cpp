@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -122,6 +123,29 @@ TEST_F(Statistics, KeepsEveryChangeAndTenSamplesASecondForDrawing) {
   EXPECT_EQ(trace.samples[4].charged_bytes, 200u);
   EXPECT_EQ(trace.samples[5].charged_bytes, 600u);
   EXPECT_EQ(trace.samples[5].resident_signatures, 10u);
+}
+
+// A month at ten changes a second and more: what is kept stays within its bounds, from the first
+// cycle to the last, and shows the trouble in between.
+TEST_F(Statistics, ThinsWhatItKeepsOfALongRun) {
+  statistics.keep_trace();
+  const auto cycles = static_cast<int>(RunStatistics::kMostSamples * 4 + 17);
+  for (int i = 0; i < cycles; ++i) {
+    cycle(static_cast<ZoneId>(i % 2), i == cycles / 2);
+    Event event;
+    event.kind = EventKind::kZoneEntered;
+    event.zone = 0;
+    event.t_ns = now_ns;
+    statistics.on_event(event);
+  }
+  const RunTrace trace = statistics.take_trace();
+  EXPECT_LE(trace.samples.size(), RunStatistics::kMostSamples);
+  EXPECT_GE(trace.samples.size(), RunStatistics::kMostSamples / 4);
+  EXPECT_LE(trace.events.size(), RunStatistics::kMostTraceEvents);
+  EXPECT_EQ(trace.samples.front().t_s, 0);
+  EXPECT_NEAR(trace.samples.back().t_s, (cycles - 1) * 0.1, 5);
+  EXPECT_EQ(std::ranges::count_if(trace.samples, &TraceSample::blocked), 1);
+  EXPECT_TRUE(std::ranges::is_sorted(trace.samples, {}, &TraceSample::t_s));
 }
 
 }  // namespace
