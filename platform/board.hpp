@@ -31,4 +31,7 @@ struct BoardFact {
 // so. `root`: the folder that holds /proc and /sys ("" on a robot). Allocates; reads files.
 std::vector<BoardFact> inspect_board(const BoardNeeds& needs, const std::string& root = "");
 
+// The memory that this computer has, or the limit of the cgroup where that is lower.
+ByteCount machine_memory_bytes(const std::string& root = "");
+
 }  // namespace zonepack

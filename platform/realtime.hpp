@@ -56,6 +56,10 @@ void unlock_memory() noexcept;
 // each page.
 void use_one_heap(std::size_t present_bytes) noexcept;
 
+// Gives free memory at the end of that heap back to the system, locked or not; some is kept, so
+// that the next small need costs no fault.
+void give_back_heap() noexcept;
+
 // Kernel counters of the calling thread.
 struct ThreadUsage {
   std::uint64_t minor_faults = 0;

@@ -312,7 +312,7 @@ void MapBuilder::finish(MapFolder& folder) {
   summary_.unchanged = folder.commit(manifest);
 
   const fb::Manifest& checked = **check_manifest(manifest);
-  summary_.smallest = smallest_budget(map_costs(checked, kDefaultPayload), {});
+  summary_.smallest = smallest_budget(map_costs(checked, manifest.size(), kDefaultPayload), {});
   for (std::size_t i = 0; i < packs_.size(); ++i) {
     const PackSummary& pack = packs_[i];
     summary_.signatures += pack.signatures;

@@ -170,7 +170,8 @@ void add_plan_command(CLI::App& app, int& exit_code) {
     }
     const MapPlan plan =
         plan_map(map.manifest(), arguments->payload & packed, pinned,
-                 budget->count() > 0 ? std::optional(arguments->budget) : std::nullopt);
+                 budget->count() > 0 ? std::optional(arguments->budget) : std::nullopt,
+                 map.manifest_file().size());
     print(plan, text);
     arguments->json.write(to_json(plan, *arguments));
     exit_code = plan.budget && !plan.budget->suffices ? 1 : 0;

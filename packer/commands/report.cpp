@@ -60,7 +60,7 @@ std::string source_text(const fb::Provenance& source) {
 report::PackReport read_pack_report(const std::string& folder, PayloadMask payload) {
   const MapReader reader(folder);
   const fb::Manifest& manifest = reader.manifest();
-  const MapCosts costs = map_costs(manifest, payload);
+  const MapCosts costs = map_costs(manifest, reader.manifest_file().size(), payload);
   const SmallestBudget smallest = smallest_budget(costs, {});
   report::PackReport map;
   map.map = folder;

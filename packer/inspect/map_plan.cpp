@@ -58,8 +58,8 @@ BudgetPlan plan_budget(const MapCosts& costs, const MapPlan& plan, ByteCount byt
 }  // namespace
 
 MapPlan plan_map(const fb::Manifest& manifest, PayloadMask payload, std::span<const ZoneId> pinned,
-                 std::optional<ByteCount> budget) {
-  const MapCosts costs = map_costs(manifest, payload);
+                 std::optional<ByteCount> budget, ByteCount file_bytes) {
+  const MapCosts costs = map_costs(manifest, file_bytes, payload);
   MapPlan plan;
   plan.payload = payload;
   plan.fixed_bytes = costs.fixed_bytes;

@@ -47,7 +47,9 @@ struct MapPlan {
   std::optional<BudgetPlan> budget;
 };
 
+// `file_bytes`: of the manifest's file, which count from some hundred kilobytes on
+// (accounting.hpp).
 MapPlan plan_map(const fb::Manifest& manifest, PayloadMask payload, std::span<const ZoneId> pinned,
-                 std::optional<ByteCount> budget);
+                 std::optional<ByteCount> budget, ByteCount file_bytes = 0);
 
 }  // namespace zonepack::packer

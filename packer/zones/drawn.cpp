@@ -8,6 +8,7 @@
 #include "packer/zones/plane.hpp"
 #include "packer/zones/zone_checks.hpp"
 #include "packer/zones/zone_file.hpp"
+#include "runtime/pack_format/file/zone_name.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -52,7 +53,11 @@ class DrawnFeature {
   std::string text(const char* key) {
     const json* value = property(key);
     if (value == nullptr) return "";
-    if (value->is_string()) return value->get<std::string>();
+    if (value->is_string()) {
+      if (is_plain_text(value->get_ref<const std::string&>())) return value->get<std::string>();
+      fault(std::string("has a ") + key + " that holds a control character; remove it");
+      return "";
+    }
     if (value->is_number_integer()) return value->dump();
     fault(std::string("has a ") + key + " that is not text: " + value->dump() +
           "; write it in quotes");

@@ -13,6 +13,8 @@
 #include "packer/zones/geojson.hpp"
 #include "packer/zones/portals.hpp"
 #include "packer/zones/zone_checks.hpp"
+#include "platform/base/utf8.hpp"
+#include "runtime/pack_format/file/zone_name.hpp"
 #include "runtime/pack_format/limits.hpp"
 
 namespace zonepack::packer {
@@ -107,22 +109,23 @@ ZoneFile load_zone_file(const std::string& path, double snap_m) {
 }
 
 std::optional<std::string> find_name_problem(std::string_view name) {
-  if (name.empty()) return "it is empty";
-  if (name.size() > kMaxNameBytes) {
-    return "it is " + std::to_string(name.size()) + " bytes long, at most " +
-           std::to_string(kMaxNameBytes) + " are allowed";
-  }
-  if (name.front() == '.') return "it begins with a dot";
-  if (name.front() == ' ' || name.back() == ' ') return "it begins or ends with a blank";
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const auto c = static_cast<unsigned char>(name[i]);
-    const auto after = static_cast<unsigned char>(i + 1 < name.size() ? name[i + 1] : 0);
-    if (c == '/' || c == '\\' || c == '"') {
-      return std::string("it holds ") + name[i] + ", which file names and event logs cannot carry";
-    }
-    if (c < 0x20 || c == 0x7F || (c == 0xC2 && after >= 0x80 && after < 0xA0)) {
-      return "it holds a control character";
-    }
+  const auto fault = name_fault(name);
+  if (!fault) return std::nullopt;
+  switch (*fault) {
+    case NameFault::kEmpty:
+      return "it is empty";
+    case NameFault::kTooLong:
+      return "it is " + std::to_string(name.size()) + " bytes long, at most " +
+             std::to_string(kMaxNameBytes) + " are allowed";
+    case NameFault::kDot:
+      return "it begins with a dot";
+    case NameFault::kBlank:
+      return "it begins or ends with a blank";
+    case NameFault::kSeparator:
+      return std::string("it holds ") + name[name.find_first_of("/\\\"")] +
+             ", which file names and event logs cannot carry";
+    case NameFault::kNotPlain:
+      return is_utf8(name) ? "it holds a control character" : "it is not UTF-8";
   }
   return std::nullopt;
 }

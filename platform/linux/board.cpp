@@ -224,4 +224,21 @@ std::vector<BoardFact> inspect_board(const BoardNeeds& needs, const std::string&
   return Board(needs, root).inspect();
 }
 
+ByteCount machine_memory_bytes(const std::string& root) {
+  ByteCount bytes = std::numeric_limits<ByteCount>::max();
+  std::ifstream meminfo(root + "/proc/meminfo");
+  std::string word;
+  ByteCount kib = 0;
+  while (meminfo >> word) {
+    if (word != "MemTotal:") continue;
+    if (meminfo >> kib && kib > 0) bytes = kib * kKiB;
+    break;
+  }
+  // "max" where the cgroup has no limit.
+  std::ifstream cgroup(root + "/sys/fs/cgroup/memory.max");
+  ByteCount most = 0;
+  if (cgroup >> most && most > 0) bytes = std::min(bytes, most);
+  return bytes;
+}
+
 }  // namespace zonepack

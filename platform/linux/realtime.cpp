@@ -170,6 +170,8 @@ void use_one_heap(std::size_t present_bytes) noexcept {
   std::free(block);
 }
 
+void give_back_heap() noexcept { malloc_trim(std::size_t{256} * 1024); }
+
 ThreadUsage thread_usage() noexcept {
   rusage usage{};
   getrusage(RUSAGE_THREAD, &usage);

@@ -12,6 +12,7 @@
 #include "platform/shared_memory.hpp"
 #include "runtime/live/line_requests.hpp"
 #include "runtime/live/live_source.hpp"
+#include "runtime/map/load_fault.hpp"
 #include "runtime/map/loader.hpp"
 #include "runtime/memory/shared_layout.hpp"
 #include "runtime/run/map_model.hpp"
@@ -93,10 +94,7 @@ class Check {
     for (ZoneId zone = 0; zone < inputs_.catalog.zones.size(); ++zone) {
       const auto pack = open_pack(inputs_.catalog, zone);
       if (pack) continue;
-      refuse("packs",
-             inputs_.catalog.folder + "/" + inputs_.catalog.zones[zone].pack + ": " +
-                 to_string(pack.error().code),
-             "copy the map again; zonepack verify tells more");
+      refuse("packs", load_fault(inputs_.catalog, zone, pack.error()));
       return;
     }
     good("packs", "all " + std::to_string(inputs_.catalog.zones.size()) + " there, at full length");

@@ -28,6 +28,7 @@ void MapChange::turn() {
       return take_unused();
     case Step::kFreeing:
       if (!ports_.service.done_with(leaving_) || !leaving_map_.expired()) return;
+      give_back_heap();
       if (leaving_ != last_number_) ports_.loop.map_freed();
       step_ = Step::kNone;
       return;
@@ -48,6 +49,7 @@ void MapChange::begin() {
 // In a thread of its own.
 Result<std::uint64_t> MapChange::prepare(const MapVersion& in_use) {
   auto next = make_next(in_use);
+  give_back_heap();  // what the manifest took, and all of it after a refusal
   if (!next) {
     failure_ = next.error().message;
     return next.error().code;
@@ -61,9 +63,18 @@ Result<std::uint64_t> MapChange::prepare(const MapVersion& in_use) {
 Outcome<std::shared_ptr<MapVersion>> MapChange::make_next(const MapVersion& in_use) {
   const std::string& folder = in_use.catalog().folder;
   const std::string path = folder + "/" + std::string(kManifestName);
-  auto manifest = read_file(path, kMaxManifestFileBytes, ReadMode::kBuffered);
-  auto catalog = manifest ? Catalog::read(*manifest, folder, in_use.catalog().payload)
+  const ByteCount room = in_use.model().room_for_next();
+  auto manifest = read_manifest_file(folder, room, ReadMode::kBuffered);
+  auto catalog = manifest ? Catalog::read(*manifest, folder, in_use.catalog().payload, room)
                           : Result<Catalog>(manifest.error());
+  if (!catalog && catalog.error().code == ErrorCode::kTooLarge && catalog.error().detail > 0) {
+    return failure(path + ": reading it and holding its tables beside the map in use takes " +
+                       format_byte_count(static_cast<ByteCount>(catalog.error().detail)) +
+                       ", over the " + format_byte_count(room) + " that the budget of " +
+                       format_byte_count(in_use.model().limits.budget) +
+                       " leaves for it; start zoned again with this map, or with a larger budget",
+                   ErrorCode::kTooLarge);
+  }
   if (!catalog) {
     const Error& error = catalog.error();
     return failure(

@@ -31,6 +31,8 @@ struct MapChangePorts {
 // switches, or refuses (MapSwitcher); and frees what is no longer used once nobody looks at it.
 // Whatever is wrong, the map in use stays, an event says why, and a message names the file.
 //
+// Memory: never more than MapModel::room_for_next() of the map in use; given back after a refusal.
+//
 // Threads: one, which calls turn() many times a second.
 class MapChange {
  public:

@@ -12,6 +12,7 @@
 #include "platform/storage.hpp"
 #include "runtime/live/live_memory.hpp"
 #include "runtime/live/live_run.hpp"
+#include "runtime/map/next_version.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 #include "runtime/run/log_faults.hpp"
 #include "runtime/run/log_time.hpp"
@@ -50,7 +51,7 @@ Outcome<RecordingPreface> make_preface(const RunArguments& arguments, const RunI
   preface.map_folder = catalog.folder;
   preface.terms = terms;
   const std::string path = catalog.folder + "/" + std::string(kManifestName);
-  auto manifest = read_file(path, kMaxManifestFileBytes);
+  auto manifest = read_manifest_file(catalog.folder, catalog.reading_bytes, ReadMode::kBuffered);
   if (!manifest || manifest_digest(*manifest) != catalog.version) {
     return failure(path + ": changed while zoned was starting; start it again",
                    ErrorCode::kMismatch);
@@ -89,6 +90,17 @@ Outcome<void> drive(const RunArguments& arguments, RunInputs& inputs,
   if (!map) return map.error();
   const MapModel& model = (*map)->model();
   if (model.warning) warn(*model.warning);
+  if (!terms.budget) {
+    std::cerr << kProgram
+              << ": memory.budget is not set: " << format_byte_count(model.limits.budget)
+              << (terms.max_signatures > 0 ? ", for the whole map" : ", the smallest for this map")
+              << "; up to " << format_byte_count(terms.default_most)
+              << ", a quarter of the memory here, would be taken\n";
+  }
+  if (const auto claims = check_claims((*map)->catalog(), !terms.budget, ReadMode::kBuffered);
+      !claims) {
+    return claims.error();
+  }
 
   const Notifier notifier = service_manager();
   const auto memory =

@@ -14,17 +14,27 @@ std::string text_of(const flatbuffers::String* text) {
 
 }  // namespace
 
-Result<Catalog> Catalog::open(const std::string& folder, PayloadMask payload) {
-  const std::string path = folder + "/" + std::string(kManifestName);
-  const Result<std::vector<std::byte>> file =
-      read_file(path, kMaxManifestFileBytes, ReadMode::kBuffered);
-  if (!file) return file.error();
-  return read(*file, folder, payload);
+Result<std::vector<std::byte>> read_manifest_file(const std::string& folder, ByteCount most,
+                                                  ReadMode mode) {
+  const std::uint64_t limit = std::min(kMaxManifestFileBytes, most / kManifestHeldTimes);
+  auto file = read_file(folder + "/" + std::string(kManifestName), limit, mode);
+  if (file || file.error().code != ErrorCode::kTooLarge) return file;
+  const auto size = static_cast<ByteCount>(file.error().detail);
+  return {ErrorCode::kTooLarge, static_cast<std::int64_t>(kManifestHeldTimes * size)};
 }
 
-Result<Catalog> Catalog::read(ByteSpan file, const std::string& folder, PayloadMask payload) {
+Result<Catalog> Catalog::open(const std::string& folder, PayloadMask payload, ByteCount most) {
+  const Result<std::vector<std::byte>> file = read_manifest_file(folder, most, ReadMode::kBuffered);
+  if (!file) return file.error();
+  return read(*file, folder, payload, most);
+}
+
+Result<Catalog> Catalog::read(ByteSpan file, const std::string& folder, PayloadMask payload,
+                              ByteCount most) {
   const Result<const fb::Manifest*> checked = check_manifest(file);
   if (!checked) return checked.error();
+  const ByteCount need = kManifestHeldTimes * file.size() + table_bytes(**checked);
+  if (need > most) return {ErrorCode::kTooLarge, static_cast<std::int64_t>(need)};
   const fb::Manifest& manifest = **checked;
 
   Catalog catalog;
@@ -32,8 +42,9 @@ Result<Catalog> Catalog::read(ByteSpan file, const std::string& folder, PayloadM
   std::copy(manifest.lineage()->begin(), manifest.lineage()->end(), catalog.lineage.begin());
   catalog.version = manifest_digest(file);
   catalog.payload = payload;
-  const MapCosts costs = map_costs(manifest, payload);
+  const MapCosts costs = map_costs(manifest, file.size(), payload);
   catalog.fixed_bytes = costs.fixed_bytes;
+  catalog.reading_bytes = kManifestHeldTimes * file.size();
   catalog.zones.reserve(manifest.zones()->size());
   for (const fb::Zone* zone : *manifest.zones()) {
     CatalogZone& entry = catalog.zones.emplace_back();
@@ -48,6 +59,7 @@ Result<Catalog> Catalog::read(ByteSpan file, const std::string& folder, PayloadM
       entry.stored_bytes += bytes->stored();
       entry.decoded_bytes += bytes->decoded();
     }
+    entry.chunks = chunk_count(*zone);
     entry.pack = zone->pack()->str();
     entry.pack_bytes = zone->pack_bytes();
     std::copy(zone->pack_digest()->begin(), zone->pack_digest()->end(), entry.pack_digest.begin());

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "platform/base/result.hpp"
+#include "platform/storage.hpp"
 #include "runtime/pack_format/file/accounting.hpp"
 #include "runtime/pack_format/file/checksum.hpp"
 #include "runtime/pack_format/file/geometry.hpp"
@@ -21,6 +24,7 @@ struct CatalogZone {
   std::uint32_t slots = 0;     // for the payload the catalog was opened for
   ByteCount stored_bytes = 0;  // to read for that payload
   ByteCount decoded_bytes = 0;
+  std::uint64_t chunks = 0;  // of all kinds in the pack, as the manifest says
   std::string pack;          // file name in the map's folder
   ByteCount pack_bytes = 0;  // of that file
   Digest32 pack_digest{};
@@ -43,13 +47,24 @@ struct Catalog {
   PayloadMask payload = 0;  // what will be loaded
   std::vector<CatalogZone> zones;
   std::vector<CatalogPortal> portals;
-  ByteCount fixed_bytes = 0;  // charged besides slots (accounting.hpp)
+  ByteCount fixed_bytes = 0;    // charged besides slots (accounting.hpp)
+  ByteCount reading_bytes = 0;  // that reading the manifest takes, whether charged or not
+
+  // What it takes to read this map and to hold its tables.
+  ByteCount bytes_to_open() const noexcept {
+    return fixed_bytes + std::min(reading_bytes, kFreeMapBytes);
+  }
 
   // Reads FOLDER/manifest.zpm and checks all of it. kNotFound, kIo, and the errors of
-  // check_manifest.
-  static Result<Catalog> open(const std::string& folder, PayloadMask payload);
+  // check_manifest. kTooLarge with the bytes needed: reading the manifest and holding its tables
+  // would take more than `most`; nothing of that size was allocated.
+  static Result<Catalog> open(const std::string& folder, PayloadMask payload,
+                              ByteCount most = kNoMost);
   // The same from the manifest's bytes, which must be aligned to 8; the folder may be gone.
-  static Result<Catalog> read(ByteSpan manifest, const std::string& folder, PayloadMask payload);
+  static Result<Catalog> read(ByteSpan manifest, const std::string& folder, PayloadMask payload,
+                              ByteCount most = kNoMost);
+
+  static constexpr ByteCount kNoMost = std::numeric_limits<ByteCount>::max();
 
   // What map_costs() gives for the manifest.
   MapCosts costs() const;
@@ -60,5 +75,10 @@ struct Catalog {
   // kNoZone for an unknown name.
   ZoneId find(std::string_view name) const noexcept;
 };
+
+// The bytes of FOLDER/manifest.zpm. kTooLarge, with the bytes that reading it would take, when that
+// is more than `most`; nothing was read then.
+Result<std::vector<std::byte>> read_manifest_file(const std::string& folder, ByteCount most,
+                                                  ReadMode mode);
 
 }  // namespace zonepack

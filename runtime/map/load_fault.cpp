@@ -4,6 +4,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "runtime/map/loader.hpp"
+
 namespace zonepack {
 namespace {
 
@@ -37,7 +39,13 @@ std::string what_was_found(Error error) {
       return to_string(error.code);
     case ErrorCode::kTruncated:
       return "truncated: the file ends at byte " + detail;
+    case ErrorCode::kTooLarge:
+      return "its index takes " + detail +
+             " bytes, more than the chunks that the manifest counts in it";
     case ErrorCode::kMismatch:
+      if (error.detail == kFalseClaim) {
+        return "mismatch: it has other signatures, slots or chunks than the manifest says";
+      }
       return "mismatch: it is not the pack that the manifest names";
     default:
       return std::string(to_string(error.code)) + " (" + detail + ")";

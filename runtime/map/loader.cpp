@@ -8,13 +8,16 @@ namespace zonepack {
 Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, const PackReading& reading,
                              std::uint64_t soon) {
   const CatalogZone& wanted = catalog.zones[zone];
+  PackReading bounded = reading;
+  bounded.most_index_bytes = most_index_bytes(wanted.chunks);
   Result<PackReader> pack =
-      PackReader::open(catalog.folder + "/" + wanted.pack, &wanted.pack_digest, reading, soon);
+      PackReader::open(catalog.folder + "/" + wanted.pack, &wanted.pack_digest, bounded, soon);
   if (!pack) return pack.error();
   const fb::PackIndex& index = pack->index();
   if (index.zone()->str() != wanted.name || index.signatures() != wanted.signatures ||
+      index.chunks()->size() != wanted.chunks ||
       slots_needed(index, catalog.payload) != wanted.slots) {
-    return ErrorCode::kMismatch;
+    return {ErrorCode::kMismatch, kFalseClaim};
   }
   return pack;
 }

@@ -13,7 +13,10 @@
 namespace zonepack {
 
 // Opens the pack of a zone. kMismatch when it is a whole pack, but not the one that the manifest
-// names, or holds another zone or number of signatures or slots. `soon`: see PackReader::open().
+// names; with the detail kFalseClaim, or kTooLarge with the size of its index, when it is the one
+// that the manifest names, but not as the manifest describes it: another zone, or another number of
+// signatures, slots or chunks. `soon`: see PackReader::open().
+inline constexpr std::int64_t kFalseClaim = 1;
 Result<PackReader> open_pack(const Catalog& catalog, ZoneId zone, const PackReading& reading = {},
                              std::uint64_t soon = 0);
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/map/next_version.hpp"
 
+#include <algorithm>
+#include <optional>
+
 #include "runtime/map/load_fault.hpp"
 #include "runtime/map/loader.hpp"
 
@@ -38,6 +41,33 @@ Outcome<void> check_next_version(const Catalog& in_use, const Catalog& next, Rea
     if (auto checked = check_pack(next, zone, mode); !checked) return checked;
   }
   return {};
+}
+
+Outcome<void> check_claims(const Catalog& map, bool without_budget, ReadMode mode) {
+  std::uint64_t most_confirmed = 0;
+  std::optional<ZoneId> largest;  // of those that nothing confirms
+  Error fault;
+  for (ZoneId zone = 0; zone < map.zones.size(); ++zone) {
+    const auto pack = open_pack(map, zone, mode);
+    const std::uint32_t slots = map.zones[zone].slots;
+    if (pack) {
+      most_confirmed = std::max<std::uint64_t>(most_confirmed, slots);
+      continue;
+    }
+    const Error error = pack.error();
+    const bool false_claim = error.code == ErrorCode::kTooLarge ||
+                             (error.code == ErrorCode::kMismatch && error.detail == kFalseClaim);
+    if (false_claim) return failure(load_fault(map, zone, error), error.code);
+    if (!largest || slots > map.zones[*largest].slots) {
+      largest = zone;
+      fault = error;
+    }
+  }
+  if (!without_budget || !largest || map.zones[*largest].slots <= 2 * most_confirmed) return {};
+  return failure(load_fault(map, *largest, fault) +
+                     "; without memory.budget, nothing but this pack can confirm the " +
+                     std::to_string(map.zones[*largest].slots) + " slots that the manifest claims",
+                 fault.code);
 }
 
 }  // namespace zonepack

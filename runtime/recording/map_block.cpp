@@ -27,6 +27,7 @@ std::vector<std::byte> write_map(const RecordedMap& map) {
   out.bytes(map.manifest);
   ZP_REQUIRE(out.ok());
   std::vector<std::byte> blocks, block;
+  blocks.reserve(out.written().size() + out.written().size() / 64 + kMapHeadRoom);
   for (ByteSpan rest = out.written(); !rest.empty();) {
     const ByteSpan part = rest.first(std::min(rest.size(), kMapBlockContent));
     seal_block(BlockKind::kMap, part, block);

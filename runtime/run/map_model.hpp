@@ -17,7 +17,8 @@ namespace zonepack {
 
 // How a map is to be held.
 struct MapTerms {
-  std::optional<ByteCount> budget{};  // nothing: see limits_for()
+  std::optional<ByteCount> budget{};  // nothing: see limits_for(), but never over default_most
+  ByteCount default_most = Catalog::kNoMost;
   std::uint64_t max_signatures = 0;
   std::vector<std::string> pinned{};  // names
   LoadRates rates{};
@@ -35,12 +36,17 @@ struct MapModel {
   ZoneGraph graph;
   std::vector<ZoneNeed> needs;
   std::vector<float> load_s;
-  // To reserve: as many as all zones fill together, and another version's largest in addition.
+  // To reserve: as many as all zones fill together, and another version's largest in addition; less
+  // where the budget must also hold long tables of another version.
   std::uint32_t slots;
   std::optional<std::string> warning;  // a complete message
 
   // Fails when the map cannot be held on these terms.
   static Outcome<std::unique_ptr<MapModel>> make(const Catalog& catalog, const MapTerms& terms);
+
+  // What reading another version's manifest and holding its tables may take while this map is in
+  // memory: what the budget leaves, and what the program's own memory allows for.
+  ByteCount room_for_next() const noexcept;
 
   // How another version of the map is to be held in this one's place: no more of anything.
   MapTerms terms_of_next(const MapTerms& terms) const;

@@ -1,12 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/run/run_inputs.hpp"
 
+#include "platform/board.hpp"
 #include "runtime/odometry/det_math.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
 
 namespace zonepack {
 namespace {
 
-Failure map_failure(const std::string& folder, const Error& error) {
+Failure map_failure(const std::string& folder, const Error& error,
+                    std::optional<ByteCount> budget) {
+  if (error.code == ErrorCode::kTooLarge && error.detail > 0) {
+    const std::string limit = budget ? "budget of " + format_byte_count(*budget)
+                                     : "default limit of " +
+                                           format_byte_count(default_budget_limit()) +
+                                           ", a quarter of this computer's memory";
+    return {error.code, folder + "/" + std::string(kManifestName) +
+                            ": reading it and holding its tables takes " +
+                            format_byte_count(static_cast<ByteCount>(error.detail)) +
+                            ", over the " + limit +
+                            "; zonepack verify tells whether it is as zonepack build writes it"};
+  }
   return {error.code, folder + ": cannot be opened as a map: " + to_string(error.code) + " (" +
                           std::to_string(error.detail) +
                           "); it must hold manifest.zpm as written by zonepack build, and zonepack "
@@ -32,8 +46,11 @@ Outcome<RunInputs> read_run_inputs(const RunChoices& choices) {
   if (folder.empty()) {
     return failure("no map: give --map DIR or map.path in " + choices.config);
   }
-  Result<Catalog> catalog = Catalog::open(folder, inputs.settings.memory.payload.mask);
-  if (!catalog) return map_failure(folder, catalog.error());
+  const std::optional<ByteCount> budget =
+      choices.budget ? choices.budget : inputs.settings.memory.budget;
+  Result<Catalog> catalog = Catalog::open(folder, inputs.settings.memory.payload.mask,
+                                          budget.value_or(default_budget_limit()) + kFreeMapBytes);
+  if (!catalog) return map_failure(folder, catalog.error(), budget);
   inputs.catalog = std::move(catalog).value();
 
   if (!choices.corrections.empty()) {
@@ -47,6 +64,11 @@ Outcome<RunInputs> read_run_inputs(const RunChoices& choices) {
     inputs.truth = std::move(*truth);
   }
   return inputs;
+}
+
+ByteCount default_budget_limit() {
+  static const ByteCount limit = machine_memory_bytes() / 4;
+  return limit;
 }
 
 CycleConfig cycle_config(const Settings& settings) {
@@ -71,6 +93,7 @@ CycleConfig cycle_config(const Settings& settings) {
 MapTerms map_terms(const RunChoices& choices, const Settings& settings) {
   MapTerms terms;
   terms.budget = choices.budget ? choices.budget : settings.memory.budget;
+  terms.default_most = default_budget_limit();
   terms.max_signatures = choices.max_signatures.value_or(settings.memory.max_signatures);
   terms.pinned = settings.memory.pinned;
   terms.rates.storage = choices.storage_rate.value_or(

@@ -38,6 +38,9 @@ struct RunInputs {
 // Fails at the first thing that is wrong.
 Outcome<RunInputs> read_run_inputs(const RunChoices& choices);
 
+// The most that a map may take when no budget is set: a quarter of this computer's memory.
+ByteCount default_budget_limit();
+
 CycleConfig cycle_config(const Settings& settings);
 MapTerms map_terms(const RunChoices& choices, const Settings& settings);
 

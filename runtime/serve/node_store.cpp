@@ -27,9 +27,7 @@ Result<NodeStore> NodeStore::open(const Catalog& catalog) {
   const std::string path = catalog.folder + "/" + std::string(kManifestName);
   Result<StorageFile> file = StorageFile::open(path);
   if (!file) return file.error();
-  if (file->size() > kMaxManifestFileBytes) {
-    return {ErrorCode::kTooLarge, static_cast<std::int64_t>(file->size())};
-  }
+  if (kManifestHeldTimes * file->size() != catalog.reading_bytes) return ErrorCode::kMismatch;
   // A manifest is far shorter than what 32 bits can address (kMaxManifestBytes).
   std::vector<std::byte> bytes(static_cast<std::size_t>(file->size()));
   if (const Result<void> read = file->read_at(0, bytes); !read) return read.error();

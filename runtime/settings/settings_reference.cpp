@@ -116,7 +116,8 @@ struct FieldKind {
   static std::string shown(const std::string& value) { return value.empty() ? "-" : value; }
   static std::string shown(const std::vector<std::string>&) { return "[]"; }
   static std::string shown(const std::optional<ByteCount>&) {
-    return "the smallest that the map allows; with max_signatures, the whole map";
+    return "the smallest that the map allows; with max_signatures, the whole map; refused beyond "
+           "a quarter of the computer's memory, and printed";
   }
   static std::string shown(const PayloadChoice& value) {
     return "[" + payload_words(value.mask) + "]";

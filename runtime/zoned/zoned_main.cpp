@@ -59,13 +59,15 @@ void add_choices(CLI::App& app, RunChoices& choices) {
                if (start) choices.start = *start;
                return start.has_value();
              });
-  add_parsed(app, "--budget", "SIZE",
-             "hard limit of all that grows with the map (default: settings, else the smallest)",
-             "a SIZE: integer bytes, or with suffix KiB, MiB or GiB, such as 8MiB",
-             [&choices](const std::string& text) {
-               choices.budget = zonepack::parse_byte_count(text);
-               return choices.budget.has_value();
-             });
+  add_parsed(
+      app, "--budget", "SIZE",
+      "hard limit of all that grows with the map (default: settings, else the smallest, up to a "
+      "quarter of the memory here)",
+      "a SIZE: integer bytes, or with suffix KiB, MiB or GiB, such as 8MiB",
+      [&choices](const std::string& text) {
+        choices.budget = zonepack::parse_byte_count(text);
+        return choices.budget.has_value();
+      });
   app.add_option("--max-signatures", choices.max_signatures,
                  "most signatures in memory at once; 0: no limit")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1'000'000'000}))

@@ -211,7 +211,7 @@ bool read_manifest(ByteSpan bytes) {
   if (!checked) return false;
   const fb::Manifest& manifest = **checked;
   for (const PayloadMask wanted : {kCoreOnly, kDefaultPayload, kEveryPayload}) {
-    const MapCosts costs = map_costs(manifest, wanted);
+    const MapCosts costs = map_costs(manifest, file.span().size(), wanted);
     const ZoneId pinned[] = {0, 1};
     sink = smallest_budget(costs, pinned).bytes;
   }

@@ -44,3 +44,13 @@ if(TARGET zonepack)
   add_dependencies(build_test zonepack)
   gtest_discover_tests(build_test TEST_PREFIX "system/" DISCOVERY_TIMEOUT 60)
 endif()
+
+# Maps that ask for more memory than the budget: at start, at SIGHUP, and after the refusal.
+if(TARGET zonepack AND TARGET zoned)
+  zonepack_test_program(hostile/make_hostile_map.cpp zonepack_packer_test_support)
+  add_test(NAME system/hostile_maps
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/hostile/hostile_maps_test.py
+                   ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR}
+                   $<TARGET_FILE:make_hostile_map>)
+  set_tests_properties(system/hostile_maps PROPERTIES TIMEOUT 600)
+endif()

@@ -24,12 +24,6 @@ ByteCount table_bytes(const fb::Portal& portal) {
   return kTableBytesPerPortal + (portal.name() == nullptr ? 0 : portal.name()->size());
 }
 
-std::uint64_t chunks_of(const fb::Zone& zone) {
-  std::uint64_t count = 0;
-  for (const fb::PayloadBytes* payload : *zone.payloads()) count += payload->chunks();
-  return count;
-}
-
 // Marks by ZoneId; ignores ids beyond the last zone.
 std::vector<bool> marked(std::span<const ZoneId> zones, std::size_t count) {
   std::vector<bool> marks(count, false);
@@ -52,23 +46,37 @@ ChunkBytes chunk_bytes(const fb::Zone& zone, PayloadMask wanted) noexcept {
   return bytes;
 }
 
-MapCosts map_costs(const fb::Manifest& manifest, PayloadMask wanted) {
-  MapCosts costs;
-  ByteCount tables = kTableBytesPerMap;
+std::uint64_t chunk_count(const fb::Zone& zone) noexcept {
+  std::uint64_t count = 0;
+  for (const fb::PayloadBytes* payload : *zone.payloads()) count += payload->chunks();
+  return count;
+}
+
+ByteCount table_bytes(const fb::Manifest& manifest) noexcept {
+  ByteCount bytes = kTableBytesPerMap + kReadBufferBytes + kIndexBytesPerPack;
   std::uint64_t most_chunks = 0;
   for (const fb::Zone* zone : *manifest.zones()) {
-    costs.zone_slots.push_back(zone_slots(manifest, *zone, wanted));
-    tables += table_bytes(*zone);
-    most_chunks = std::max(most_chunks, chunks_of(*zone));
+    bytes += table_bytes(*zone);
+    most_chunks = std::max(most_chunks, chunk_count(*zone));
   }
   if (manifest.portals() != nullptr) {
-    for (const fb::Portal* portal : *manifest.portals()) {
-      tables += table_bytes(*portal);
-      costs.neighbours.emplace_back(portal->zone_a(), portal->zone_b());
-    }
+    for (const fb::Portal* portal : *manifest.portals()) bytes += table_bytes(*portal);
   }
-  costs.fixed_bytes =
-      tables + kReadBufferBytes + kIndexBytesPerPack + most_chunks * kIndexBytesPerChunk;
+  return bytes + most_chunks * kIndexBytesPerChunk;
+}
+
+MapCosts map_costs(const fb::Manifest& manifest, ByteCount file_bytes, PayloadMask wanted) {
+  MapCosts costs;
+  costs.fixed_bytes = table_bytes(manifest) + manifest_charge(file_bytes);
+  costs.zone_slots.reserve(manifest.zones()->size());
+  for (const fb::Zone* zone : *manifest.zones()) {
+    costs.zone_slots.push_back(zone_slots(manifest, *zone, wanted));
+  }
+  if (manifest.portals() == nullptr) return costs;
+  costs.neighbours.reserve(manifest.portals()->size());
+  for (const fb::Portal* portal : *manifest.portals()) {
+    costs.neighbours.emplace_back(portal->zone_a(), portal->zone_b());
+  }
   return costs;
 }
 

@@ -28,6 +28,17 @@ inline constexpr ByteCount kTableBytesPerMap = 16 * kKiB;
 inline constexpr ByteCount kReadBufferBytes = 64 * kKiB;
 inline constexpr ByteCount kIndexBytesPerChunk = 96;  // its entry, and where it was loaded to
 inline constexpr ByteCount kIndexBytesPerPack = 512;
+// While a manifest is read, its bytes are held this many times: the file, and its copy and blocks
+// in a recording. The first kFreeMapBytes of that are part of the program's own memory, the 16 MiB
+// besides the budget; the rest is charged.
+inline constexpr ByteCount kManifestHeldTimes = 3;
+inline constexpr ByteCount kFreeMapBytes = 2 * kMiB;
+
+// The longest index of a pack with so many chunks, as the manifest counts them: the bytes that are
+// charged for it.
+constexpr ByteCount most_index_bytes(std::uint64_t chunks) noexcept {
+  return kIndexBytesPerPack + chunks * sizeof(fb::ChunkEntry);
+}
 
 using ZonePair = std::pair<ZoneId, ZoneId>;
 
@@ -44,8 +55,20 @@ struct ChunkBytes {
 };
 ChunkBytes chunk_bytes(const fb::Zone& zone, PayloadMask wanted) noexcept;
 
-// Costs of a checked manifest when these kinds are loaded.
-MapCosts map_costs(const fb::Manifest& manifest, PayloadMask wanted);
+// Chunks of all kinds in a zone's pack.
+std::uint64_t chunk_count(const fb::Zone& zone) noexcept;
+
+constexpr ByteCount manifest_charge(ByteCount file_bytes) noexcept {
+  const ByteCount held = kManifestHeldTimes * file_bytes;
+  return held > kFreeMapBytes ? held - kFreeMapBytes : 0;
+}
+
+// The tables and read buffers that a checked manifest asks for, without allocating any.
+ByteCount table_bytes(const fb::Manifest& manifest) noexcept;
+
+// Costs of a checked manifest, whose file has so many bytes, when these kinds are loaded.
+// Memory: 4 bytes a zone and 8 bytes a portal, less than table_bytes() counts for them.
+MapCosts map_costs(const fb::Manifest& manifest, ByteCount file_bytes, PayloadMask wanted);
 
 // All charged bytes when `slots` slots exist.
 constexpr ByteCount charged_with(ByteCount fixed_bytes, std::uint64_t slots) noexcept {

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "runtime/pack_format/file/pack_file.hpp"
+#include "runtime/pack_format/file/zone_name.hpp"
 #include "runtime/pack_format/limits.hpp"
 #include "runtime/pack_format/struct_alignment.hpp"
 
@@ -16,13 +17,41 @@ std::string_view view_of(const flatbuffers::String* text) noexcept {
   return text == nullptr ? std::string_view() : std::string_view(text->c_str(), text->size());
 }
 
-bool ring_is_sound(const fb::Ring* ring, std::uint32_t* vertices) noexcept {
+// What the zones and portals of a manifest refer to, each piece as often as it is referred to. A
+// FlatBuffer may share a piece between tables, so that a short file describes a large map; a packer
+// never does, and readers copy.
+class Contents {
+ public:
+  explicit Contents(ByteCount file_bytes) : left_(file_bytes) {}
+
+  // False when the pieces are more than the file has bytes.
+  template <typename T>
+  bool add(const flatbuffers::Vector<T>* piece, ByteCount item_bytes) noexcept {
+    const ByteCount bytes =
+        piece == nullptr ? 0 : sizeof(std::uint32_t) + piece->size() * item_bytes;
+    if (bytes > left_) return false;
+    left_ -= bytes;
+    return true;
+  }
+  bool add(const flatbuffers::String* text) noexcept { return add<char>(text, 1); }
+
+ private:
+  ByteCount left_;
+};
+
+bool ring_is_sound(const fb::Ring* ring, std::uint32_t* vertices, Contents& contents) noexcept {
   if (ring->points()->size() < 3 || !is_aligned(ring->points())) return false;
+  if (ring->points()->size() > kMaxVerticesPerZone - *vertices) return false;
+  if (!contents.add(ring->points(), sizeof(fb::Point))) return false;
   *vertices += ring->points()->size();
   for (const fb::Point* p : *ring->points()) {
     if (!std::isfinite(p->x()) || !std::isfinite(p->y())) return false;
   }
-  return *vertices <= kMaxVerticesPerZone;
+  return true;
+}
+
+bool text_is_plain(const flatbuffers::String* text, Contents& contents) noexcept {
+  return text == nullptr || (contents.add(text) && is_plain_text(view_of(text)));
 }
 
 bool file_name_is_plain(std::string_view name) noexcept {
@@ -30,20 +59,35 @@ bool file_name_is_plain(std::string_view name) noexcept {
          name.find('\0') == name.npos;
 }
 
-bool zone_is_sound(const fb::Manifest& manifest, const fb::Zone& zone) noexcept {
-  const std::string_view name = view_of(zone.name());
+bool texts_are_sound(const fb::Zone& zone, Contents& contents) noexcept {
+  for (const flatbuffers::String* const text :
+       {zone.name(), zone.zone_type(), zone.label(), zone.parent(), zone.pack(), zone.layer(),
+        zone.floor()}) {
+    if (!text_is_plain(text, contents)) return false;
+  }
+  return !name_fault(view_of(zone.name())) && file_name_is_plain(view_of(zone.pack()));
+}
+
+bool zone_is_sound(const fb::Manifest& manifest, const fb::Zone& zone,
+                   Contents& contents) noexcept {
   std::uint32_t vertices = 0;
-  if (name.empty() || name.size() > kMaxNameBytes || !file_name_is_plain(view_of(zone.pack())) ||
-      zone.pack_digest()->size() != sizeof(Digest32) || zone.signatures() > kMaxSignaturesPerZone ||
-      !ring_is_sound(zone.outer(), &vertices)) {
+  if (!texts_are_sound(zone, contents) || zone.pack_digest()->size() != sizeof(Digest32) ||
+      zone.signatures() > kMaxSignaturesPerZone ||
+      !ring_is_sound(zone.outer(), &vertices, contents)) {
     return false;
   }
   if (zone.holes() != nullptr) {
+    if (!contents.add(zone.holes(), sizeof(std::uint32_t))) return false;
     for (const fb::Ring* hole : *zone.holes()) {
-      if (!ring_is_sound(hole, &vertices)) return false;
+      if (!ring_is_sound(hole, &vertices, contents)) return false;
     }
   }
   if (!is_aligned(zone.payloads()) || !is_aligned(zone.nodes())) return false;
+  if (!contents.add(zone.pack_digest(), 1) || !contents.add(zone.slots(), sizeof(std::uint32_t)) ||
+      !contents.add(zone.payloads(), sizeof(fb::PayloadBytes)) ||
+      !contents.add(zone.nodes(), sizeof(fb::Node)) || zone.payloads()->size() > 32) {
+    return false;
+  }
   for (const fb::PayloadBytes* payload : *zone.payloads()) {
     if (payload->kind() >= 32) return false;
   }
@@ -85,9 +129,10 @@ Result<const fb::Manifest*> check_manifest(ByteSpan file) noexcept {
       (manifest.payload_mask() & kCoreOnly) == 0) {
     return ErrorCode::kBadValue;
   }
+  Contents contents(body.size());
   std::string_view previous;
   for (const fb::Zone* zone : *manifest.zones()) {
-    if (!zone_is_sound(manifest, *zone) || view_of(zone->name()) <= previous) {
+    if (!zone_is_sound(manifest, *zone, contents) || view_of(zone->name()) <= previous) {
       return ErrorCode::kBadValue;
     }
     previous = view_of(zone->name());
@@ -95,8 +140,8 @@ Result<const fb::Manifest*> check_manifest(ByteSpan file) noexcept {
   if (manifest.portals() != nullptr) {
     if (manifest.portals()->size() > kMaxPortals) return ErrorCode::kTooLarge;
     for (const fb::Portal* portal : *manifest.portals()) {
-      if (!is_aligned(portal->p()) || !is_aligned(portal->q()) ||
-          portal->zone_a() >= manifest.zones()->size() ||
+      if (!text_is_plain(portal->name(), contents) || !is_aligned(portal->p()) ||
+          !is_aligned(portal->q()) || portal->zone_a() >= manifest.zones()->size() ||
           portal->zone_b() >= manifest.zones()->size() || portal->zone_a() == portal->zone_b() ||
           !std::isfinite(portal->p()->x()) || !std::isfinite(portal->p()->y()) ||
           !std::isfinite(portal->q()->x()) || !std::isfinite(portal->q()->y())) {

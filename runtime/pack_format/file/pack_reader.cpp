@@ -38,6 +38,9 @@ Result<PackReader> PackReader::open(const std::string& path, const Digest32* exp
   const Result<PackTail> tail = check_tail(last.last<sizeof(PackTail)>(), file->size());
   if (!tail) return tail.error();
   if (expected != nullptr && tail->digest != *expected) return ErrorCode::kMismatch;
+  if (tail->index_size > reading.most_index_bytes) {
+    return {ErrorCode::kTooLarge, static_cast<std::int64_t>(tail->index_size)};
+  }
   std::array<std::byte, sizeof(PackHeader)> header;
   if (const auto read = file->read_at(0, header); !read) return read.error();
 

@@ -20,6 +20,7 @@ struct PackReading {
 
   ReadMode mode;
   ReadQueue* queue;
+  ByteCount most_index_bytes = kMaxIndexBytes;  // refused beyond, before memory is taken for it
 };
 
 // An open pack with its index read and checked.
@@ -29,7 +30,8 @@ struct PackReading {
 // every core that runs a thread of this process, including the control thread.
 class PackReader {
  public:
-  // With `expected`: kMismatch for a whole pack with another digest. `soon`: bytes from the front
+  // With `expected`: kMismatch for a whole pack with another digest. kTooLarge with its size: the
+  // index is longer than the reading allows. `soon`: bytes from the front
   // that the caller reads next by windows; where the mode reads ahead, fetching them starts
   // together with the index, and front_asked() returns how many were requested.
   static Result<PackReader> open(const std::string& path, const Digest32* expected = nullptr,

@@ -147,6 +147,7 @@ TEST(LoadMemory, IsNeverMoreThanWhatIsCharged) {
     zone.pack_digest = pack.digest;
     zone.signatures = pack.signatures;
     zone.slots = pack.slots.back();
+    for (const PackSummary::Payload& payload : pack.payloads) zone.chunks += payload.chunks;
   }
   Arena arena(catalog.zones[0].slots, kSlotBytes);
   std::vector<std::byte*> slots;
