@@ -83,6 +83,7 @@ Outcome<Settings> usable_settings(const std::string& config) {
     for (const std::string& fault : loaded.faults) all += "\n  " + fault;
     return failure(all);
   }
+  for (const std::string& text : loaded.warnings) std::cerr << "warning: " << text << '\n';
   if (!has_sides(loaded.settings.odometry.wheels.model)) {
     return failure(
         config +
@@ -160,7 +161,7 @@ std::string calibrated_yaml(const Calibration& calibration, const OdometrySettin
   const Calibration& c = calibration;
   const double mean = (c.fitted.left + c.fitted.right) / 2;
   std::string text = "odometry:\n";
-  if (odometry.unit == WheelUnit::kMetres) {
+  if (is_length(odometry.unit)) {
     text += key("scale", odometry.scale * mean, odometry.scale * c.scale_sigma);
   } else {
     text += key("wheel_radius", odometry.wheel_radius_m * mean,

@@ -65,6 +65,9 @@ class Check {
     }
     inputs_ = std::move(*inputs);
     good("settings", arguments_.config);
+    for (const std::string& text : inputs_.warnings) {
+      rows_.push_back({Row::Kind::kWeak, "settings", text, ""});
+    }
     good("map",
          inputs_.catalog.folder + ", " + std::to_string(inputs_.catalog.zones.size()) + " zones");
     return true;

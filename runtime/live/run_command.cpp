@@ -120,6 +120,9 @@ Outcome<void> run_and_report(const RunArguments& arguments) {
   use_one_heap(kHeapBytes);
   auto inputs = read_run_inputs(arguments);
   if (!inputs) return inputs.error();
+  for (const std::string& text : inputs->warnings) {
+    std::cerr << kProgram << ": warning: " << text << '\n';
+  }
   const auto summary = drive(arguments, *inputs, handed);
   if (!summary) return summary.error();
   if (auto written = write_summary(*summary, arguments.json); !written) return written;

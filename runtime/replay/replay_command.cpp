@@ -91,6 +91,7 @@ Outcome<void> replay_log(const ReplayArguments& arguments) {
   }
   auto inputs = read_run_inputs(arguments);
   if (!inputs) return inputs.error();
+  for (const std::string& text : inputs->warnings) note("warning: " + text);
   std::vector<BaselineRow> baseline;
   if (!arguments.baseline.empty()) {
     auto rows = read_baseline(arguments.baseline);
