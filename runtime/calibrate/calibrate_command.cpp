@@ -8,6 +8,8 @@
 #include "platform/atomic_file.hpp"
 #include "platform/can_log.hpp"
 #include "runtime/odometry/det_math.hpp"
+#include "runtime/run/log_match.hpp"
+#include "runtime/run/rejected_text.hpp"
 
 namespace zonepack {
 namespace {
@@ -138,7 +140,8 @@ Outcome<std::vector<WheelStep>> read_wheel_steps(const Settings& settings, const
   const double half_track = wheels.geometry.track_m * wheels.geometry.slip_factor / 2;
   WheelOdometry odometry(wheels);
   std::vector<WheelStep> steps;
-  while (const auto frame = log.next()) {
+  LogMatch frames(log);
+  while (const auto frame = frames.next()) {
     const std::uint64_t breaks = odometry.counters().gaps + odometry.counters().rebased;
     const auto increment = odometry.take(*frame);
     if (!increment || increment->to_ns <= increment->from_ns) continue;
@@ -150,9 +153,11 @@ Outcome<std::vector<WheelStep>> read_wheel_steps(const Settings& settings, const
                      forward + turn * half_track, known});
   }
   if (steps.empty()) {
-    return failure(can +
-                   ": holds none of the frames that odometry reads, or fewer than two; check "
-                   "can.interface and the signals of the settings");
+    const std::string mismatch = frames.mismatch(wheels, can, log.summary());
+    if (!mismatch.empty()) return failure(mismatch);
+    const std::string why = rejected_text(odometry.counters(), wheels);
+    return failure(can + ": holds fewer than two samples that odometry can use" +
+                   (why.empty() ? "" : "; refused: " + why));
   }
   return steps;
 }
