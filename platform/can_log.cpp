@@ -6,6 +6,8 @@
 #include <cstring>
 #include <span>
 
+#include "platform/base/file_kind.hpp"
+
 namespace zonepack {
 namespace {
 
@@ -27,6 +29,7 @@ bool CanLogReader::start() {
   given_ = false;
   added_ns_ = 0;
   rhythm_count_ = 0;
+  asc_lines_ = {};
   file_.reset(std::fopen(path_.c_str(), "rb"));
   if (file_) refill();
   return file_ != nullptr;
@@ -57,18 +60,36 @@ std::string CanLogReader::explain(const Error& error) const {
     default:
       break;
   }
+  if (foreign_ != nullptr) {
+    std::string kind = foreign_;
+    const std::size_t at = kind.find("FILE");
+    return path_ + ": is " + kind.replace(at, 4, shell_quoted(path_));
+  }
+  if (const std::string kind = stand_in_at(path_); !kind.empty()) {
+    return path_ + ": is " + kind +
+           "; expected lines such as (1718021600.001102) can0 311#000040DB00015BCF";
+  }
   std::string message =
       path_ + ": no CAN frame in " + std::to_string(summary_.lines) +
       " lines; expected lines such as (1718021600.001102) can0 311#000040DB00015BCF";
   if (summary_.other_interfaces > 0) {
     message += "; " + std::to_string(summary_.other_interfaces) +
-               " frames are of other interfaces than " + interface_;
+               " frames are of other interfaces than " + interface_ + ": " + summary_.other_names +
+               "; say which one by can.interface";
   }
   if (!summary_.faults.empty()) {
     message += "; line " + std::to_string(summary_.faults.front().line) + ": " +
                summary_.faults.front().what;
   }
   return message;
+}
+
+void CanLogReader::name_other(std::string_view name) {
+  constexpr std::size_t kMost = 100;  // characters of all names
+  const std::string listed = ", " + summary_.other_names + ",";
+  const std::string wanted = ", " + std::string(name) + ",";
+  if (summary_.other_names.size() > kMost || listed.find(wanted) != std::string::npos) return;
+  summary_.other_names += (summary_.other_names.empty() ? "" : ", ") + std::string(name);
 }
 
 void CanLogReader::note(std::uint64_t line, std::string_view what, std::string_view text) {
@@ -97,7 +118,11 @@ bool CanLogReader::read_line(std::string_view& line) {
 std::optional<CanLogReader::Item> CanLogReader::read_frame() {
   std::string_view text;
   while (read_line(text)) {
-    CanLogLine line = parse_can_log_line(text);
+    if (summary_.lines == 1) {
+      asc_ = CanAscLines::begins_with(text);
+      foreign_ = foreign_can_log(text);
+    }
+    CanLogLine line = asc_ ? asc_lines_.parse(text) : parse_can_log_line(text);
     if (text.size() == kLongestLine) {
       line.kind = CanLogLine::Kind::kBroken;
       line.fault = "line of over 1000 characters";
@@ -110,6 +135,7 @@ std::optional<CanLogReader::Item> CanLogReader::read_frame() {
     if (line.kind != CanLogLine::Kind::kFrame) continue;
     if (!interface_.empty() && line.interface != interface_) {
       ++summary_.other_interfaces;
+      name_other(line.interface);
       if (other_.empty()) other_ = line.interface;
       several_others_ = several_others_ || line.interface != other_;
       continue;

@@ -14,6 +14,7 @@
 #include "platform/base/result.hpp"
 #include "platform/can_bus.hpp"
 #include "platform/can_frame_source.hpp"
+#include "platform/can_log_asc.hpp"
 #include "platform/can_log_line.hpp"
 
 namespace zonepack {
@@ -36,6 +37,7 @@ struct CanLogSummary {
   std::uint64_t unsorted_stamps = 0;   // frames with a stamp before the latest one so far
   std::uint64_t clock_steps = 0;       // times that the clock of the stamps was set
   std::uint64_t other_interfaces = 0;  // frames that the interface filter skipped
+  std::string other_names;             // of their interfaces: "can1, can2"; cut after some
   std::string interface;               // whose frames are returned; empty: all
   std::uint64_t error_frames = 0;
   std::uint64_t dropped = 0;     // as DROPCOUNT lines report
@@ -44,7 +46,8 @@ struct CanLogSummary {
   std::vector<ClockStep> steps;  // the first kMostFaults of clock_steps
 };
 
-// Reads a candump recording (formats: can_log_line.hpp) from front to back in bounded memory.
+// Reads a candump recording (formats: can_log_line.hpp) or a Vector ASC file from front to back in
+// bounded memory.
 //
 // A broken line is counted, recorded with its number and skipped; only a file without a single
 // valid frame is an error. The order of the file is the order of arrival: frames whose stamp steps
@@ -107,6 +110,7 @@ class CanLogReader final : public CanFrameSource {
   std::optional<Item> read_frame();
   void refill();
   void note(std::uint64_t line, std::string_view what, std::string_view text);
+  void name_other(std::string_view name);
   bool start();
   bool stamps_are_differences() const noexcept;
   bool is_stray(const Item& item) const noexcept;
@@ -124,6 +128,9 @@ class CanLogReader final : public CanFrameSource {
   bool end_ = false;
   bool relative_ = false;
   std::string other_;  // the first interface skipped
+  CanAscLines asc_lines_;
+  bool asc_ = false;
+  const char* foreign_ = nullptr;  // what else the log is; a static text
   bool several_others_ = false;
   bool given_ = false;
   std::int64_t latest_ns_ = 0;  // largest stamp since the clock was set, as the log has it

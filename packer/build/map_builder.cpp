@@ -96,10 +96,7 @@ void MapBuilder::outline() {
   }
   summary_.feature_row_bytes = outline.feature_count * kFeatureRowBytes;
   summary_.source_bytes = summary_.feature_row_bytes + outline.scan_bytes + outline.grid_bytes;
-  if (outline.nodes.empty()) {
-    throw std::runtime_error(options_.database.string() +
-                             ": the database holds no signatures; nothing to pack");
-  }
+  require_signatures(outline, options_.database.string());
   damages_ = outline.damages;
   for (const Damage& damage : damages_) skipped_.insert(damage.signature);
   if (options_.unlinked == UnlinkedPolicy::kError && outline.unlinked() > 0) {
@@ -171,6 +168,7 @@ void MapBuilder::pack(MapFolder& folder, const ZonePlan& plan,
   work();
   threads.clear();
   if (failure) std::rethrow_exception(failure);
+  database_.require_unchanged();
   refuse_damaged();
   progress_.finish(std::to_string(total) + " signatures of " + std::to_string(order.size()) +
                    " zones on " + std::to_string(jobs) + (jobs == 1 ? " core" : " cores"));

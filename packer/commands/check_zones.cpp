@@ -27,6 +27,7 @@ struct SignatureCounts {
 
 SignatureCounts count_signatures(const std::filesystem::path& db, const ZonePlan& plan) {
   const RtabmapDatabase database(db);
+  require_signatures(database.outline(), db.string());
   SignatureCounts counts;
   std::vector<SignaturePlace> places;
   for (const NodeOutline& node : database.outline().nodes) {

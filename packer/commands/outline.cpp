@@ -138,6 +138,7 @@ void print_next_step(const OutlineOptions& options, bool with_map, std::ostream&
 void write_outline(const OutlineOptions& options, std::ostream& text, ordered_json& json) {
   RtabmapDatabase database(options.db);
   const MapOutline& outline = database.outline();
+  require_signatures(outline, options.db.string());
   const MapDrawing plan = drawing_of(database);
   const std::vector<Path> paths = paths_of(outline);
   const std::size_t linked = outline.nodes.size() - outline.unlinked();
@@ -151,6 +152,7 @@ void write_outline(const OutlineOptions& options, std::ostream& text, ordered_js
   }
   files.emplace_back("signatures.geojson", signatures_geojson(outline));
   files.emplace_back("trajectories.geojson", trajectories_geojson(paths));
+  database.require_unchanged();
   write_together(options.out, files);
 
   std::vector<std::string> warnings = outline.warnings;

@@ -2,6 +2,7 @@
 #include "packer/sources/map_outline.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace zonepack::packer {
 
@@ -29,6 +30,13 @@ std::optional<std::string> MapOutline::parameter(std::string_view key) const {
     }
   }
   return std::nullopt;
+}
+
+void require_signatures(const MapOutline& outline, const std::string& database) {
+  if (!outline.nodes.empty()) return;
+  throw std::runtime_error(database +
+                           ": the database holds no signatures; nothing to pack. Map the building "
+                           "again and let RTAB-Map close the database");
 }
 
 }  // namespace zonepack::packer

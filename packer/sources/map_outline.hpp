@@ -63,4 +63,7 @@ struct MapOutline {
   std::optional<std::string> parameter(std::string_view key) const;
 };
 
+// Throws when the database holds no signatures: mapping ended before it saved any.
+void require_signatures(const MapOutline& outline, const std::string& database);
+
 }  // namespace zonepack::packer

@@ -94,7 +94,10 @@ class RtabmapDatabase::Reader {
 RtabmapDatabase::RtabmapDatabase(const std::filesystem::path& path)
     : path_(path), reader_(std::make_unique<Reader>(path)) {
   outline_ = std::make_shared<const MapOutline>(read_outline(reader_->file(), reader_->schema()));
+  reader_->file().require_unchanged();
 }
+
+void RtabmapDatabase::require_unchanged() const { reader_->file().require_unchanged(); }
 
 RtabmapDatabase::RtabmapDatabase(const std::filesystem::path& path,
                                  std::shared_ptr<const MapOutline> outline)
@@ -104,7 +107,11 @@ RtabmapDatabase::~RtabmapDatabase() = default;
 RtabmapDatabase::RtabmapDatabase(RtabmapDatabase&&) noexcept = default;
 RtabmapDatabase& RtabmapDatabase::operator=(RtabmapDatabase&&) noexcept = default;
 
-RtabmapDatabase RtabmapDatabase::reopen() const { return RtabmapDatabase(path_, outline_); }
+RtabmapDatabase RtabmapDatabase::reopen() const {
+  RtabmapDatabase again(path_, outline_);
+  require_unchanged();
+  return again;
+}
 
 const MapOutline& RtabmapDatabase::outline() const noexcept { return *outline_; }
 
@@ -122,6 +129,9 @@ void RtabmapDatabase::read(std::int32_t id, const PayloadSet& wanted, SignatureR
     reader_->read(id, wanted, into);
   } catch (const SqliteCorrupt& error) {
     throw DamagedSignature(path_.string(), {id, "database file", error.problem()});
+  } catch (const DamagedSignature&) {
+    require_unchanged();
+    throw;
   }
   into.pose = node->pose;
 }

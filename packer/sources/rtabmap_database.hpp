@@ -31,6 +31,9 @@ class RtabmapDatabase {
 
   const MapOutline& outline() const noexcept;
 
+  // Throws SqliteError when the file changed since it was first opened.
+  void require_unchanged() const;
+
   // Reads one signature of the outline with the wanted payloads, as stored: scans, grids and user
   // data unzipped; images, depth and calibration checked but unchanged. Replaces `into` and reuses
   // its memory, so that reading in order of id into one record costs little more than SQLite and

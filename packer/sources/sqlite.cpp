@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "packer/sources/sqlite.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cstring>
 #include <fstream>
 #include <system_error>
+
+#include "platform/base/file_kind.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -46,7 +50,11 @@ void refuse_unless_database(const fs::path& path, const std::string& name) {
   if (!std::ifstream(path, std::ios::binary)) {
     throw SqliteError(name + ": cannot be read: " + std::strerror(errno));
   }
-  if (first_bytes(path, kDatabaseMagic.size()) != kDatabaseMagic) {
+  const std::string first = first_bytes(path, kFileKindBytes);
+  if (const std::string kind = stand_in(first); !kind.empty()) {
+    throw SqliteError(name + ": is " + kind + "; expected a SQLite database");
+  }
+  if (!first.starts_with(kDatabaseMagic)) {
     throw SqliteError(name +
                       ": is not a SQLite database (its first 16 bytes are not those of one)");
   }
@@ -57,16 +65,16 @@ void refuse_if_not_closed(const fs::path& path, const std::string& name) {
   const fs::path wal = with_suffix(path, "-wal");
   if (const auto size = fs::file_size(wal, error); !error && size > 0) {
     throw SqliteError(name + ": has changes that are not in the file yet (" + wal.string() +
-                      "); close RTAB-Map, or run: sqlite3 '" + name +
-                      "' 'PRAGMA wal_checkpoint(TRUNCATE)'");
+                      "); close RTAB-Map, or run: sqlite3 " + shell_quoted(name) +
+                      " 'PRAGMA wal_checkpoint(TRUNCATE)'");
   }
   const fs::path journal = with_suffix(path, "-journal");
   // SQLite's own rule: a journal whose first byte is not zero is unfinished.
   const std::string first = first_bytes(journal, 1);
   if (!first.empty() && first[0] != '\0') {
     throw SqliteError(name + ": a write to it was interrupted (" + journal.string() +
-                      "); close RTAB-Map, or let SQLite restore it: sqlite3 '" + name +
-                      "' 'PRAGMA schema_version'");
+                      "); close RTAB-Map, or let SQLite restore it: sqlite3 " + shell_quoted(name) +
+                      " 'PRAGMA schema_version'");
   }
 }
 
@@ -86,10 +94,27 @@ std::string immutable_uri(const fs::path& absolute_path) {
 
 }  // namespace
 
+FileState file_state(const fs::path& path) {
+  FileState state;
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return state;
+  state.device = status.st_dev;
+  state.inode = status.st_ino;
+  state.size = static_cast<std::uint64_t>(status.st_size);
+  state.mtime_s = status.st_mtim.tv_sec;
+  state.mtime_ns = status.st_mtim.tv_nsec;
+  const std::string header = first_bytes(path, 28);
+  if (header.size() == 28) state.change_counter = header.substr(24);
+  return state;
+}
+
 SqliteFile::SqliteFile(const fs::path& path) : name_(path.string()) {
   refuse_unless_database(path, name_);
   // SQLite keeps its log and journal next to the file itself, not next to a link to it.
   const fs::path file = fs::canonical(path);
+  // Before the look for a journal: a commit that begins in between changes the state.
+  state_ = file_state(file);
+  file_ = file;
   refuse_if_not_closed(file, name_);
   sqlite3* handle = nullptr;
   const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
@@ -101,6 +126,19 @@ SqliteFile::SqliteFile(const fs::path& path) : name_(path.string()) {
   sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_exec(handle, "PRAGMA cell_size_check=ON", nullptr, nullptr, nullptr);
+}
+
+void SqliteFile::require_unchanged() const {
+  bool writing = false;
+  try {
+    refuse_if_not_closed(file_, name_);
+  } catch (const SqliteError&) {
+    writing = true;
+  }
+  if (!writing && file_state(file_) == state_) return;
+  throw SqliteError(name_ +
+                    ": changed while it was read; close RTAB-Map (or copy the database while "
+                    "nothing writes to it) and try again");
 }
 
 std::vector<std::string> SqliteFile::columns(const std::string& table) const {
@@ -143,11 +181,15 @@ void SqliteQuery::fail() const {
   if (code != SQLITE_CORRUPT && code != SQLITE_NOTADB) {
     throw SqliteError(file_->name() + ": " + reason);
   }
-  throw SqliteCorrupt(file_->name(), "expected whole database pages, found damaged ones (" +
-                                         reason +
-                                         "); copy the file again, or salvage it with: "
-                                         "sqlite3 '" +
-                                         file_->name() + "' .recover | sqlite3 NEW.db");
+  file_->require_unchanged();
+  // Debian's sqlite3 has no .recover; .dump ends what it could read of a damaged file with
+  // ROLLBACK.
+  throw SqliteCorrupt(file_->name(),
+                      "expected whole database pages, found damaged ones (" + reason +
+                          "); copy the file again, or save what is readable with: sqlite3 " +
+                          shell_quoted(file_->name()) +
+                          " .dump | sed 's/^ROLLBACK;.*/COMMIT;/' | sqlite3 NEW.db (RTAB-Map's "
+                          "own tool is rtabmap-recovery)");
 }
 
 }  // namespace zonepack::packer

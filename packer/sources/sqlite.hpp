@@ -33,8 +33,17 @@ class SqliteCorrupt : public SqliteError {
   std::string problem_;
 };
 
+// What changes of a database file when a program commits to it.
+struct FileState {
+  std::uint64_t device = 0, inode = 0, size = 0;
+  std::int64_t mtime_s = 0, mtime_ns = 0;
+  std::string change_counter;  // bytes 24 to 27 of the file; SQLite counts commits there
+  bool operator==(const FileState&) const = default;
+};
+FileState file_state(const std::filesystem::path& path);
+
 // A SQLite database opened read-only and immutable: no byte, lock, journal or timestamp of it
-// changes.
+// changes. SQLite therefore does not notice another program's writes; require_unchanged() does.
 //
 // Threads: one per object; another thread opens its own.
 class SqliteFile {
@@ -42,6 +51,10 @@ class SqliteFile {
   // Refuses anything but a whole, closed database: a missing or empty file, a folder, another kind
   // of file, one with a live write-ahead log or a hot journal next to it.
   explicit SqliteFile(const std::filesystem::path& path);
+
+  // Throws SqliteError when the file was written since it was opened, or is being written. What was
+  // read until then may mix several states.
+  void require_unchanged() const;
 
   const std::string& name() const noexcept { return name_; }  // the path as given
   sqlite3* handle() const noexcept { return handle_.get(); }
@@ -54,6 +67,8 @@ class SqliteFile {
     void operator()(sqlite3* handle) const noexcept { sqlite3_close_v2(handle); }
   };
   std::string name_;
+  std::filesystem::path file_;  // without links
+  FileState state_;
   std::unique_ptr<sqlite3, Close> handle_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "packer/zones/drawn.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -28,6 +29,7 @@ class DrawnFeature {
         it != feature.value.end() && it->is_object()) {
       geometry_ = *it;
     }
+    take_only_part();
     subject_ = "feature " + std::to_string(feature.index);
   }
 
@@ -139,6 +141,18 @@ class DrawnFeature {
   }
 
  private:
+  // QGIS saves every layer as Multi-geometries, mostly of one part.
+  void take_only_part() {
+    const std::string type = geometry_type();
+    const auto at = geometry_.find("coordinates");
+    if (!type.starts_with("Multi") || at == geometry_.end() || !at->is_array() || at->size() != 1) {
+      return;
+    }
+    json only = std::move((*at)[0]);
+    geometry_["coordinates"] = std::move(only);
+    geometry_["type"] = type.substr(5);
+  }
+
   const GeoJsonFeature& feature_;
   Findings& findings_;
   json properties_ = json::object();
@@ -256,10 +270,69 @@ void read_line(const GeoJsonFeature& feature, DrawnFeature& reader, Drawing& dra
   }
 }
 
+std::string parts_text(const json& coordinates) {
+  if (!coordinates.is_array() || coordinates.empty()) return "";
+  return " of " + std::to_string(coordinates.size()) + " parts";
+}
+
+// The box around all positions of the file.
+struct Extent {
+  double x_min = HUGE_VAL, y_min = HUGE_VAL, x_max = -HUGE_VAL, y_max = -HUGE_VAL;
+
+  void add(const json& coordinates) {
+    if (!coordinates.is_array()) return;
+    if (coordinates.size() >= 2 && coordinates[0].is_number() && coordinates[1].is_number()) {
+      const auto x = coordinates[0].get<double>();
+      const auto y = coordinates[1].get<double>();
+      x_min = std::min(x_min, x);
+      x_max = std::max(x_max, x);
+      y_min = std::min(y_min, y);
+      y_max = std::max(y_max, y);
+      return;
+    }
+    for (const json& part : coordinates) add(part);
+  }
+};
+
+std::string exact(double value) { return json(value).dump(); }
+
+// A building in degrees is smaller than a tenth of one; in metres it would be 10 cm.
+std::string looks_like_degrees(const std::vector<GeoJsonFeature>& features) {
+  constexpr double kMost_deg = 0.1;
+  constexpr double kEarth_m = 6378137;  // radius of EPSG:3857
+  Extent all;
+  for (const GeoJsonFeature& feature : features) {
+    const auto geometry = feature.value.find("geometry");
+    if (geometry == feature.value.end() || !geometry->is_object()) continue;
+    if (const auto at = geometry->find("coordinates"); at != geometry->end()) all.add(*at);
+  }
+  const double width = all.x_max - all.x_min;
+  const double height = all.y_max - all.y_min;
+  const bool small = width >= 0 && width < kMost_deg && height >= 0 && height < kMost_deg;
+  const bool on_earth = std::abs(all.x_min) <= 180 && std::abs(all.y_min) <= 85;
+  if (!small || !on_earth || width + height <= 0) return "";
+  const auto metres_text = [](double longitude, double latitude) {
+    const double x = kEarth_m * longitude * M_PI / 180;
+    const double y = kEarth_m * std::log(std::tan(M_PI / 4 + latitude * M_PI / 360));
+    return "(" + number_text(std::round(x * 100) / 100) + ", " +
+           number_text(std::round(y * 100) / 100) + ")";
+  };
+  return "all zones together lie between (" + exact(all.x_min) + ", " + exact(all.y_min) +
+         ") and (" + exact(all.x_max) + ", " + exact(all.y_max) +
+         "), less than 10 cm apart: the coordinates look like degrees of longitude and latitude, "
+         "expected metres in the map frame. In EPSG:3857 they are " +
+         metres_text(all.x_min, all.y_min) + " to " + metres_text(all.x_max, all.y_max) +
+         ": save the zones in EPSG:3857 (QGIS: in the project's CRS, not in WGS 84)";
+}
+
 }  // namespace
 
 Drawing read_drawing(const std::vector<GeoJsonFeature>& features, Findings& findings) {
   Drawing drawing;
+  if (const std::string degrees = looks_like_degrees(features); !degrees.empty()) {
+    findings.faults.push_back({std::nullopt, 0, "", degrees});
+    return drawing;
+  }
   for (const GeoJsonFeature& feature : features) {
     DrawnFeature reader(feature, findings);
     const std::string type = reader.geometry_type();
@@ -271,7 +344,7 @@ Drawing read_drawing(const std::vector<GeoJsonFeature>& features, Findings& find
                type == "GeometryCollection") {
       if (const std::string name = reader.text("name"); !name.empty()) reader.call_it(type, name);
       reader.fault(
-          "is a " + type +
+          "is a " + type + parts_text(reader.coordinates()) +
           "; a zone is one Polygon and a portal one LineString: split it into single parts "
           "(QGIS: Vector > Geometry Tools > Multipart to Singleparts) and give each its own "
           "name");

@@ -13,6 +13,7 @@
 #include "packer/zones/geojson.hpp"
 #include "packer/zones/portals.hpp"
 #include "packer/zones/zone_checks.hpp"
+#include "platform/base/file_kind.hpp"
 #include "platform/base/utf8.hpp"
 #include "runtime/pack_format/file/zone_name.hpp"
 #include "runtime/pack_format/limits.hpp"
@@ -29,7 +30,11 @@ std::string read_text(const std::string& path) {
                              (errno != 0 ? std::strerror(errno) : "it is empty") +
                              "; expected GeoJSON");
   }
-  return text.str();
+  std::string bytes = std::move(text).str();
+  if (const std::string kind = stand_in(bytes); !kind.empty()) {
+    throw std::runtime_error(path + ": is " + kind + "; expected GeoJSON");
+  }
+  return bytes;
 }
 
 void add_sound_zones(const Drawing& drawing, ZonePlan& plan) {

@@ -9,7 +9,9 @@
 #include "platform/can_log.hpp"
 #include "runtime/odometry/det_math.hpp"
 #include "runtime/run/log_faults.hpp"
+#include "runtime/run/log_match.hpp"
 #include "runtime/run/log_time.hpp"
+#include "runtime/run/rejected_text.hpp"
 
 namespace zonepack {
 namespace {
@@ -85,6 +87,7 @@ Outcome<Settings> usable_settings(const std::string& config) {
     for (const std::string& fault : loaded.faults) all += "\n  " + fault;
     return failure(all);
   }
+  for (const std::string& text : loaded.warnings) std::cerr << "warning: " << text << '\n';
   if (!has_sides(loaded.settings.odometry.wheels.model)) {
     return failure(
         config +
@@ -141,7 +144,8 @@ Outcome<std::vector<WheelStep>> read_wheel_steps(const Settings& settings, const
   const double half_track = wheels.geometry.track_m * wheels.geometry.slip_factor / 2;
   WheelOdometry odometry(wheels);
   std::vector<WheelStep> steps;
-  while (const auto frame = log.next()) {
+  LogMatch frames(log);
+  while (const auto frame = frames.next()) {
     const std::uint64_t breaks = odometry.counters().gaps + odometry.counters().rebased;
     const auto increment = odometry.take(*frame);
     if (!increment || increment->to_ns <= increment->from_ns) continue;
@@ -154,9 +158,11 @@ Outcome<std::vector<WheelStep>> read_wheel_steps(const Settings& settings, const
   }
   tell_log_faults(can, log.summary());
   if (steps.empty()) {
-    return failure(can +
-                   ": holds none of the frames that odometry reads, or fewer than two; check "
-                   "can.interface and the signals of the settings");
+    const std::string mismatch = frames.mismatch(wheels, can, log.summary());
+    if (!mismatch.empty()) return failure(mismatch);
+    const std::string why = rejected_text(odometry.counters(), wheels);
+    return failure(can + ": holds fewer than two samples that odometry can use" +
+                   (why.empty() ? "" : "; refused: " + why));
   }
   return steps;
 }
@@ -165,7 +171,7 @@ std::string calibrated_yaml(const Calibration& calibration, const OdometrySettin
   const Calibration& c = calibration;
   const double mean = (c.fitted.left + c.fitted.right) / 2;
   std::string text = "odometry:\n";
-  if (odometry.unit == WheelUnit::kMetres) {
+  if (is_length(odometry.unit)) {
     text += key("scale", odometry.scale * mean, odometry.scale * c.scale_sigma);
   } else {
     text += key("wheel_radius", odometry.wheel_radius_m * mean,

@@ -15,6 +15,7 @@
 #include "runtime/map/load_fault.hpp"
 #include "runtime/map/loader.hpp"
 #include "runtime/memory/shared_layout.hpp"
+#include "runtime/run/log_match.hpp"
 #include "runtime/run/map_model.hpp"
 
 namespace zonepack {
@@ -66,6 +67,9 @@ class Check {
     }
     inputs_ = std::move(*inputs);
     good("settings", arguments_.config);
+    for (const std::string& text : inputs_.warnings) {
+      rows_.push_back({Row::Kind::kWeak, "settings", text, ""});
+    }
     good("map",
          inputs_.catalog.folder + ", " + std::to_string(inputs_.catalog.zones.size()) + " zones");
     return true;
@@ -141,6 +145,19 @@ class Check {
     } else {
       good(name, arguments_.source.name);
     }
+    if (source && kind == Kind::kLog) match_log();
+  }
+
+  // Whether the log holds what odometry reads.
+  void match_log() {
+    constexpr std::uint64_t kMostFrames = 1'000'000;
+    CanLogReader log(arguments_.source.name, inputs_.settings.can.interface);
+    if (!log.open()) return;
+    LogMatch frames(log);
+    for (std::uint64_t i = 0; i < kMostFrames && frames.next(); ++i) continue;
+    const std::string mismatch =
+        frames.mismatch(inputs_.settings.odometry.wheels, arguments_.source.name, log.summary());
+    if (!mismatch.empty()) rows_.push_back({Row::Kind::kWeak, "CAN frames", mismatch, ""});
   }
 
   void lines() {

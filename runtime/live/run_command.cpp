@@ -143,6 +143,7 @@ Outcome<void> run_and_report(const RunArguments& arguments) {
   use_one_heap(kHeapBytes);
   auto inputs = read_run_inputs(arguments);
   if (!inputs) return inputs.error();
+  for (const std::string& text : inputs->warnings) warn(text);
   if (arguments.source.kind == CanSourceChoice::Kind::kLog &&
       (!inputs->corrections.empty() || inputs->truth)) {
     const LogTime time = LogTime::read(arguments.source.name, inputs->settings.can.interface);

@@ -13,6 +13,13 @@ int rank(const FixCandidates::Candidate& candidate) noexcept {
   return static_cast<int>(candidate.fixes) * 2 + (candidate.near_guess ? 1 : 0) - 1;
 }
 
+// Of two with the same rank. A single fix does not replace an older one: either may be wrong, and
+// the robot's zone would jump with each.
+bool goes_first(const FixCandidates::Candidate& a, const FixCandidates::Candidate& b) noexcept {
+  if (a.fixes == 1 && b.fixes == 1) return a.anchor < b.anchor;
+  return a.anchor > b.anchor;
+}
+
 }  // namespace
 
 void FixCandidates::guess(const OdometryHistory& history, const UncertainPose& pose) noexcept {
@@ -21,12 +28,12 @@ void FixCandidates::guess(const OdometryHistory& history, const UncertainPose& p
 }
 
 // A free place, or that of the candidate with the fewest fixes, the oldest of these; never the
-// guess.
-FixCandidates::Candidate& FixCandidates::place_for_new() noexcept {
+// guess, nor what is spared.
+FixCandidates::Candidate& FixCandidates::place_for_new(const Candidate* spared) noexcept {
   if (count_ < all_.size()) return all_[count_++];
   Candidate* weakest = nullptr;
   for (Candidate& candidate : all_) {
-    if (candidate.fixes == 0) continue;
+    if (candidate.fixes == 0 || &candidate == spared) continue;
     if (weakest == nullptr || candidate.fixes < weakest->fixes ||
         (candidate.fixes == weakest->fixes && candidate.anchor < weakest->anchor)) {
       weakest = &candidate;
@@ -37,8 +44,8 @@ FixCandidates::Candidate& FixCandidates::place_for_new() noexcept {
 
 std::optional<FixCandidates::Candidate> FixCandidates::add(const OdometryHistory& history,
                                                            const UncertainPose& fix,
-                                                           std::uint64_t index,
-                                                           double gate_chi2) noexcept {
+                                                           std::uint64_t index, double gate_chi2,
+                                                           bool keep_first) noexcept {
   Candidate* best = nullptr;
   double least = gate_chi2;
   bool near_guess = false;
@@ -59,9 +66,9 @@ std::optional<FixCandidates::Candidate> FixCandidates::add(const OdometryHistory
     }
   }
   if (best == nullptr) {
-    place_for_new() = {index,     fix, history.carry(fix, index, history.newest()),
-                       1,         1,   history.at(index).t_ns,
-                       near_guess};
+    place_for_new(keep_first ? first() : nullptr) = {
+        index,     fix, history.carry(fix, index, history.newest()), 1, 1, history.at(index).t_ns,
+        near_guess};
     return std::nullopt;
   }
   best->anchor = std::max(index, best->anchor);
@@ -71,6 +78,15 @@ std::optional<FixCandidates::Candidate> FixCandidates::add(const OdometryHistory
   ++best->fixes;
   ++best->run;
   return *best;
+}
+
+const FixCandidates::Candidate* FixCandidates::first() const noexcept {
+  const Candidate* first = nullptr;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const int higher = first == nullptr ? 1 : rank(all_[i]) - rank(*first);
+    if (higher > 0 || (higher == 0 && goes_first(all_[i], *first))) first = &all_[i];
+  }
+  return first;
 }
 
 void FixCandidates::interrupt(std::int64_t t_ns) noexcept {
@@ -85,11 +101,11 @@ std::size_t FixCandidates::list(std::array<PoseHypothesis, kMaxHypotheses>& into
                                 std::uint32_t least_fixes) const noexcept {
   std::array<const Candidate*, kMaxHypotheses> order{};
   for (std::size_t i = 0; i < count_; ++i) order[i] = &all_[i];
-  // Insertion sort; among equals the newer first.
+  // Insertion sort.
   for (std::size_t i = 1; i < count_; ++i) {
     for (std::size_t j = i; j > 0; --j) {
       const int higher = rank(*order[j]) - rank(*order[j - 1]);
-      if (higher < 0 || (higher == 0 && order[j]->anchor <= order[j - 1]->anchor)) break;
+      if (higher < 0 || (higher == 0 && !goes_first(*order[j], *order[j - 1]))) break;
       std::swap(order[j], order[j - 1]);
     }
   }

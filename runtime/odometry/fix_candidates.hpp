@@ -38,17 +38,17 @@ class FixCandidates {
 
   // Adds a fix, given at entry `index`, to the candidate that it agrees with best (within the gate,
   // a squared Mahalanobis distance), or makes it a new one in place of the weakest. Returns the
-  // candidate that was confirmed; nothing for a new one.
+  // candidate that was confirmed; nothing for a new one. keep_first: the best one keeps its place.
   std::optional<Candidate> add(const OdometryHistory& history, const UncertainPose& fix,
-                               std::uint64_t index, double gate_chi2) noexcept;
+                               std::uint64_t index, double gate_chi2, bool keep_first) noexcept;
 
   // A fix was accepted elsewhere: runs start over, and candidates without a fix in the last
   // kMemory_ns are dropped.
   void interrupt(std::int64_t t_ns) noexcept;
 
   // Writes the candidates with at least `least_fixes` to `into` from index `first` on, best first:
-  // by most fixes; a given start before a single fix that contradicts it. Returns the index after
-  // the last.
+  // by most fixes; a given start before a single fix that contradicts it; of single fixes the
+  // older. Returns the index after the last.
   std::size_t list(std::array<PoseHypothesis, kMaxHypotheses>& into, std::size_t first,
                    std::uint32_t least_fixes) const noexcept;
 
@@ -63,7 +63,8 @@ class FixCandidates {
  private:
   static constexpr std::int64_t kMemory_ns = 6'000'000'000;
 
-  Candidate& place_for_new() noexcept;
+  Candidate& place_for_new(const Candidate* spared) noexcept;
+  const Candidate* first() const noexcept;  // as list() orders them; null without any
 
   std::array<Candidate, kMaxHypotheses> all_;
   std::size_t count_ = 0;

@@ -173,9 +173,12 @@ void PoseFilter::drift_until(std::int64_t now_ns) noexcept {
 
 bool PoseFilter::is_plausible(const PoseCorrection& fix) const noexcept {
   const auto sound = [](double sigma) { return std::isfinite(sigma) && sigma > 0 && sigma < 1e6; };
-  const auto near = [](double metres) { return std::isfinite(metres) && std::abs(metres) < 1e7; };
+  // No map reaches further (the packer's limit of coordinates).
+  const auto near = [](double metres) { return std::isfinite(metres) && std::abs(metres) < 1e6; };
+  // More is an angle in degrees.
+  constexpr double kMostYaw_rad = 2 * kPi + 0.01;
   return near(fix.T_map_base.x_m) && near(fix.T_map_base.y_m) &&
-         std::isfinite(wrap_angle(fix.T_map_base.yaw_rad)) && sound(fix.sigma_x_m) &&
+         std::abs(fix.T_map_base.yaw_rad) <= kMostYaw_rad && sound(fix.sigma_x_m) &&
          sound(fix.sigma_y_m) && sound(fix.sigma_yaw_rad);
 }
 
@@ -270,7 +273,7 @@ CorrectionVerdict PoseFilter::place(const UncertainPose& fix, std::uint64_t inde
 
 // Untrusted: a hypothesis. Trusted: refused, but a run of such fixes that agree is believed.
 CorrectionVerdict PoseFilter::support(const UncertainPose& fix, std::uint64_t index) noexcept {
-  const auto confirmed = candidates_.add(history_, fix, index, settings_.gate_chi2);
+  const auto confirmed = candidates_.add(history_, fix, index, settings_.gate_chi2, !trusted_);
   const bool believed = confirmed && (trusted_ ? confirmed->run >= settings_.reinit_fixes
                                                : confirmed->fixes >= kFixesForTrust);
   if (!believed) return trusted_ ? Verdict::kOutlier : Verdict::kHypothesis;

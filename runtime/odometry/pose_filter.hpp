@@ -33,7 +33,7 @@ enum class CorrectionVerdict : std::uint8_t {
   kOutlier,        // refused by the gate
   kTooOld,         // from before the history
   kFromFuture,     // stamped after now
-  kInvalid,        // not finite, or a sigma that is not positive
+  kInvalid,        // not finite, no angle in radians, beyond any map, or a sigma not over 0
 };
 const char* to_string(CorrectionVerdict verdict) noexcept;
 

@@ -60,6 +60,7 @@ bool WheelOdometry::note_readings(const CanFrame& frame) noexcept {
   if (!any) return false;
   ++counters_.frames;
   if (!watch_.healthy()) ++counters_.unwatched;
+  if (refused && watch_.healthy()) ++counters_.unreadable;
   if (refused || !watch_.healthy()) {
     ++counters_.rejected;
     return false;
@@ -270,6 +271,8 @@ std::optional<OdometryIncrement> WheelOdometry::take(const CanFrame& frame) noex
   }
   ++counters_.rejected;
   if (step.seconds > 0) ++counters_.jumps;
+  if (step.seconds > 0 && !plausible(step)) ++counters_.too_fast;
+  if (!(step.seconds > 0)) ++counters_.not_newer;
   const bool late = step.seconds <= 0 && step.seconds >= -settings_.gap_s;
   if (!late) suspect_ = sample;
   return std::nullopt;

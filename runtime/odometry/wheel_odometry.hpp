@@ -60,9 +60,12 @@ struct WheelOdometryCounters {
   std::uint64_t frames = 0;    // that carry one of the signals, refused ones included
   std::uint64_t rejected = 0;  // refused: short, remote request, not finite, implausible, not newer
   std::uint64_t jumps = 0;     // of these: faster or more abrupt than the limits
-  std::uint64_t gaps = 0;      // pauses longer than gap_s that an increment bridged
-  std::uint64_t rebased = 0;   // new starting points: a jump that stayed, a clock that ran back
-  std::uint64_t unwatched = 0;  // of the refused: while a watched CANopen node or SYNC was missing
+  std::uint64_t unreadable = 0;  // of the refused: short, remote request, not finite
+  std::uint64_t too_fast = 0;    // of the jumps: above max_speed or max_yaw_rate
+  std::uint64_t not_newer = 0;   // of the refused: stamp not after the last sample's
+  std::uint64_t gaps = 0;        // pauses longer than gap_s that an increment bridged
+  std::uint64_t rebased = 0;     // new starting points: a jump that stayed, a clock that ran back
+  std::uint64_t unwatched = 0;   // of the refused: while a watched CANopen node or SYNC was missing
   CanOpenCounters canopen;
 };
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/replay/replay_command.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +14,7 @@
 #include "runtime/replay/replay.hpp"
 #include "runtime/run/baseline.hpp"
 #include "runtime/run/log_faults.hpp"
+#include "runtime/run/log_match.hpp"
 #include "runtime/run/log_time.hpp"
 #include "runtime/run/run_report.hpp"
 #include "runtime/run/summary_text.hpp"
@@ -22,7 +26,7 @@ constexpr const char* kProgram = "zoned replay";
 
 void note(const std::string& message) { std::cerr << kProgram << ": " << message << '\n'; }
 
-ReplayInput replay_input(const ReplayArguments& arguments, RunInputs& inputs, CanLogReader& log) {
+ReplayInput replay_input(const ReplayArguments& arguments, RunInputs& inputs, CanFrameSource& log) {
   const Settings& settings = inputs.settings;
   ReplayInput input{inputs.catalog, log};
   input.corrections = std::move(inputs.corrections);
@@ -88,6 +92,26 @@ Outcome<void> replay_from_recording(const ReplayArguments& arguments) {
                  ErrorCode::kMismatch);
 }
 
+// First and last stamp of each file; nothing where it is absent or empty.
+struct InputTimes {
+  using Range = std::pair<std::int64_t, std::int64_t>;
+  std::optional<Range> corrections, truth;
+};
+
+InputTimes times_of(const RunInputs& inputs) {
+  InputTimes times;
+  for (const PoseCorrection& fix : inputs.corrections) {
+    auto& range = times.corrections;
+    if (!range) range = {fix.stamp_ns, fix.stamp_ns};
+    *range = {std::min(range->first, fix.stamp_ns), std::max(range->second, fix.received_ns)};
+  }
+  if (inputs.truth) {
+    const std::vector<TruthTrack::Sample>& samples = inputs.truth->samples();
+    times.truth = {samples.front().t_ns, samples.back().t_ns};
+  }
+  return times;
+}
+
 Outcome<void> replay_log(const ReplayArguments& arguments) {
   if (arguments.start.kind == StartChoice::Kind::kFix && arguments.corrections.empty()) {
     note(
@@ -96,6 +120,7 @@ Outcome<void> replay_log(const ReplayArguments& arguments) {
   }
   auto inputs = read_run_inputs(arguments);
   if (!inputs) return inputs.error();
+  for (const std::string& text : inputs->warnings) note("warning: " + text);
   std::vector<BaselineRow> baseline;
   if (!arguments.baseline.empty()) {
     auto rows = read_baseline(arguments.baseline);
@@ -111,11 +136,23 @@ Outcome<void> replay_log(const ReplayArguments& arguments) {
     inputs->corrections = time.on_first_clock(std::move(inputs->corrections));
     if (inputs->truth) inputs->truth = time.on_first_clock(*inputs->truth);
   }
-  auto result = replay(replay_input(arguments, *inputs, log));
+  LogMatch frames(log);
+  const InputTimes times = times_of(*inputs);
+  auto result = replay(replay_input(arguments, *inputs, frames));
   tell_log_faults(arguments.can, log.summary());
   if (!result) return result.error();
+  const std::string mismatch =
+      frames.mismatch(inputs->settings.odometry.wheels, arguments.can, log.summary());
+  if (!mismatch.empty()) result->warnings.push_back(mismatch);
   result->summary.can_rejected += log.summary().broken_lines + log.summary().stray_stamps;
-  return conclude(arguments, inputs->catalog, baseline, *result);
+  auto concluded = conclude(arguments, inputs->catalog, baseline, *result);
+  for (const auto& [path, times_of_file] :
+       {std::pair(arguments.corrections, times.corrections), {arguments.truth, times.truth}}) {
+    if (!concluded || !times_of_file) continue;
+    const auto& [first_ns, last_ns] = *times_of_file;
+    concluded = check_overlap(path, first_ns, last_ns, arguments.can, frames);
+  }
+  return concluded;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "platform/base/require.hpp"
+#include "runtime/run/rejected_text.hpp"
 
 namespace zonepack {
 namespace {
@@ -113,6 +114,8 @@ RunSummary Run::summarise(ByteCount bytes_loaded, std::uint64_t can_frames) cons
   summary.can_rejected = cycle.odometry_counters().rejected;
   summary.corrections_used = cycle.filter_counters().used;
   summary.corrections_rejected = cycle.filter_counters().rejected;
+  summary.can_rejected_why = rejected_text(cycle.odometry_counters(), plan_.cycle.odometry);
+  summary.corrections_rejected_why = rejected_text(cycle.filter_counters());
   summary.event_log_hash = log_.hash();
   return summary;
 }

@@ -10,6 +10,7 @@
 #include <span>
 #include <string_view>
 
+#include "platform/base/file_kind.hpp"
 #include "platform/base/require.hpp"
 #include "runtime/odometry/det_math.hpp"
 
@@ -20,12 +21,15 @@ constexpr std::string_view kCorrectionColumns = "stamp received x y yaw sigma_x 
 constexpr std::string_view kTruthColumns = "t x y z qx qy qz qw";
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kLastSecond = 9'000'000'000;
+constexpr std::int64_t kFirstNanosecond = 100'000'000'000'000'000;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 std::vector<std::string_view> split(std::string_view line) {
   std::vector<std::string_view> words;
   std::size_t begin = 0;
-  while ((begin = line.find_first_not_of(" \t\r", begin)) != std::string_view::npos) {
-    const std::size_t end = std::min(line.find_first_of(" \t\r", begin), line.size());
+  constexpr std::string_view kBetween = " \t\r,;";
+  while ((begin = line.find_first_not_of(kBetween, begin)) != std::string_view::npos) {
+    const std::size_t end = std::min(line.find_first_of(kBetween, begin), line.size());
     words.push_back(line.substr(begin, end - begin));
     begin = end;
   }
@@ -57,6 +61,11 @@ bool parse_stamp(std::string_view word, std::int64_t& stamp_ns) {
     stamp_ns = static_cast<std::int64_t>(value * kSecond_ns);
     return true;
   }
+  // EuRoC and ROS write whole nanoseconds: 18 to 19 digits for any year from 1973 on.
+  if (seconds >= kFirstNanosecond && word.find('.') == std::string_view::npos) {
+    stamp_ns = seconds;
+    return true;
+  }
   if (seconds >= kLastSecond) return false;
   stamp_ns = seconds * kSecond_ns + fraction_ns;
   return true;
@@ -64,6 +73,14 @@ bool parse_stamp(std::string_view word, std::int64_t& stamp_ns) {
 
 Failure wrong_columns(std::span<const std::string_view> words) {
   return failure(std::to_string(words.size()) + " columns");
+}
+
+// Names of columns: no word is a number.
+bool is_header(std::span<const std::string_view> words) {
+  return std::none_of(words.begin(), words.end(), [](std::string_view word) {
+    double value = 0;
+    return parse_number(word, value);
+  });
 }
 
 // Calls take(words) for every record; it fails with what is wrong with the line. The first two
@@ -77,11 +94,20 @@ Outcome<void> for_each_record(const std::string& path, std::string_view columns,
         path + ": " + std::strerror(errno) + "; expected lines of " + std::string(columns),
         ErrorCode::kNotFound);
   }
+  if (const std::string kind = stand_in_at(path); !kind.empty()) {
+    return failure(path + ": is " + kind + "; expected lines of " + std::string(columns));
+  }
   const std::size_t count = split(columns).size();
   std::string line;
+  bool first = true;
   for (std::size_t number = 1; std::getline(file, line); ++number) {
-    const std::vector<std::string_view> words = split(line);
-    if (words.empty() || words[0].front() == '#') continue;
+    std::string_view text = line;
+    if (number == 1 && text.starts_with(kByteOrderMark)) text.remove_prefix(3);
+    const std::vector<std::string_view> words = split(text);
+    if (words.empty() || words[0].front() == '#' || words[0].front() == '%') continue;
+    const bool header = first && is_header(words);
+    first = false;
+    if (header) continue;
     const Outcome<void> taken =
         words.size() < count ? wrong_columns(words) : take(std::span(words));
     if (taken) continue;

@@ -10,8 +10,10 @@
 #include "runtime/odometry/pose.hpp"
 #include "runtime/odometry/pose_filter.hpp"
 
-// The text files that come with a recorded run. One record a line, columns apart by blanks, lines
-// beginning with # and empty lines passed over. Stamps are seconds, read to the nanosecond.
+// The text files that come with a recorded run. One record a line, columns apart by blanks, tabs,
+// commas or semicolons; empty lines, lines beginning with # or % and a first line of column names
+// are passed over, as are a byte order mark and CR. Stamps are seconds, read to the nanosecond, or
+// whole nanoseconds (18 digits or more).
 // Failures name file:line, what was found, which columns are expected.
 namespace zonepack {
 

@@ -40,6 +40,7 @@ Outcome<RunInputs> read_run_inputs(const RunChoices& choices) {
     for (const std::string& fault : loaded.faults) all += "\n  " + fault;
     return failure(std::move(all));
   }
+  inputs.warnings = std::move(loaded.warnings);
   inputs.settings = std::move(loaded.settings);
   inputs.settings_text = std::move(loaded.text);
   const std::string folder = choices.map.empty() ? inputs.settings.map.path : choices.map;

@@ -33,6 +33,7 @@ struct RunInputs {
   Catalog catalog;
   std::vector<PoseCorrection> corrections;
   std::optional<TruthTrack> truth;
+  std::vector<std::string> warnings;  // for people
 };
 
 // Fails at the first thing that is wrong.

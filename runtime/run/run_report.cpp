@@ -38,6 +38,9 @@ std::string headline(const RunSummary& s) {
     text += " of its budget of " + short_bytes(s.budget_bytes) + " (" +
             percent(s.peak_charged_bytes, s.budget_bytes) + ")";
   }
+  if (!s.localised) {
+    return text + ", but the robot was never localised: its own zone was never in memory.";
+  }
   return text + (s.zone_absent_s > 0 ? ", but the robot's own zone was missing for " +
                                            format_seconds(s.zone_absent_s) + "."
                                      : ", and the robot's own zone was always in memory.");
@@ -57,11 +60,13 @@ std::vector<Fact> facts_of(const RunReportInput& input) {
       {"zones loaded, unloaded",
        format_count(s.zones_loaded) + ", " + format_count(s.zones_unloaded),
        short_bytes(s.bytes_loaded) + " loaded"},
-      {"own zone not in memory", format_seconds(s.zone_absent_s),
-       "after the start of " + format_seconds(s.start_s), s.zone_absent_s > 0},
+      s.localised ? Fact{"own zone not in memory", format_seconds(s.zone_absent_s),
+                         "after the start of " + format_seconds(s.start_s), s.zone_absent_s > 0}
+                  : Fact{"own zone not in memory", "always", "the robot was never localised", true},
       {"waiting for room", format_seconds(s.blocked_s), "a wanted zone did not fit"},
       {"zone switches", format_count(s.zone_switches),
-       format_seconds(s.wrong_zone_s) + " in a wrong zone"},
+       s.wrong_zone_s ? format_seconds(*s.wrong_zone_s) + " in a wrong zone"
+                      : "no truth, so nothing is known of wrong zones"},
   };
   if (s.pose_error_m) {
     facts.push_back({"pose error, median", format_number(s.pose_error_m->p50, 3) + " m",

@@ -138,6 +138,7 @@ void RunStatistics::watch_zone(const CycleRecord& cycle) {
   true_pose_ = truth_ != nullptr ? truth_->at(now_ns_) : std::nullopt;
   ZoneId own = state.zone;
   if (true_pose_) {
+    ++true_cycles_;
     const Point2 place{true_pose_->x_m, true_pose_->y_m};
     const ZoneId holding = graph_->zone_at(place);
     if (holding != kNoZone) true_zone_ = holding;
@@ -148,6 +149,7 @@ void RunStatistics::watch_zone(const CycleRecord& cycle) {
     true_zone_ = kNoZone;
   }
   if (!first_resident_ && cycle.counters.zones_loaded > 0) first_resident_ = cycles_ - 1;
+  localised_ = localised_ || (own != kNoZone && held_[own] == Held::kResident);
   absent_ = first_resident_ && own != kNoZone && held_[own] != Held::kResident;
   absent_cycles_ += absent_;
 }
@@ -218,7 +220,8 @@ void RunStatistics::summarise(RunSummary& summary) const {
   summary.start_s = seconds(first_resident_.value_or(cycles_));
   summary.zone_absent_s = seconds(absent_cycles_);
   summary.blocked_s = seconds(blocked_cycles_);
-  summary.wrong_zone_s = seconds(wrong_cycles_);
+  if (true_cycles_ > 0) summary.wrong_zone_s = seconds(wrong_cycles_);
+  summary.localised = localised_;
   summary.cycles = cycles_;
   if (!errors_m_.empty()) {
     std::vector<float> sorted = errors_m_;

@@ -97,6 +97,8 @@ class RunStatistics final : public EventSink {
   std::optional<Pose2> true_pose_;
   ZoneId true_zone_ = kNoZone;
   bool absent_ = false;
+  bool localised_ = false;         // the robot's own zone was resident once
+  std::uint64_t true_cycles_ = 0;  // with a true pose
   std::uint64_t absent_cycles_ = 0, blocked_cycles_ = 0, wrong_cycles_ = 0, violations_ = 0;
   NeedSum peak_;
   ByteCount peak_bytes_ = 0;

@@ -54,16 +54,20 @@ struct RunSummary {
   std::uint64_t zones_unloaded = 0;
   ByteCount bytes_loaded = 0;
   std::uint64_t zone_switches = 0;
+  bool localised = true;     // the robot's own zone was resident at some time
   double start_s = 0;        // until the first zone is resident
   double zone_absent_s = 0;  // after that: time without the robot's own zone, by truth where given
   double blocked_s = 0;
-  double wrong_zone_s = 0;  // truth more than 0.3 m inside another zone than the tracker's
+  // Truth more than 0.3 m inside another zone than the tracker's. Nothing without truth.
+  std::optional<double> wrong_zone_s;
   std::optional<PoseError> pose_error_m;  // nothing without truth
   std::uint64_t cycles = 0;
   std::uint64_t can_frames = 0;
   std::uint64_t can_rejected = 0;
+  std::string can_rejected_why;  // "312 above max_speed 3 m/s"; empty: nothing known
   std::uint64_t corrections_used = 0;
   std::uint64_t corrections_rejected = 0;
+  std::string corrections_rejected_why;
   std::string event_log_hash;  // BLAKE2b-256 of the event log, hex
   std::optional<LiveFigures> live;
 };

@@ -53,6 +53,14 @@ class JsonObject {
   std::string text_;
 };
 
+std::string number_json(const std::optional<double>& value) {
+  return value ? shortest(*value) : "null";
+}
+
+std::string with_reasons(std::uint64_t rejected, const std::string& why) {
+  return std::to_string(rejected) + (why.empty() ? "" : " (" + why + ")");
+}
+
 std::string error_json(const std::optional<PoseError>& error) {
   if (!error) return "null";
   return "{\"p50\": " + shortest(error->p50) + ", \"p95\": " + shortest(error->p95) +
@@ -107,10 +115,12 @@ std::string summary_json(const RunSummary& s) {
   json.add("zones_unloaded", s.zones_unloaded);
   json.add("bytes_loaded", s.bytes_loaded);
   json.add("zone_switches", s.zone_switches);
-  json.add("start_s", s.start_s);
-  json.add("zone_absent_s", s.zone_absent_s);
+  json.add("localised", s.localised ? "true" : "false");
+  json.add("start_s", number_json(s.localised ? std::optional(s.start_s) : std::nullopt));
+  json.add("zone_absent_s",
+           number_json(s.localised ? std::optional(s.zone_absent_s) : std::nullopt));
   json.add("blocked_s", s.blocked_s);
-  json.add("wrong_zone_s", s.wrong_zone_s);
+  json.add("wrong_zone_s", number_json(s.wrong_zone_s));
   json.add("pose_error_m", error_json(s.pose_error_m));
   json.add("cycles", s.cycles);
   json.add("can_frames", s.can_frames);
@@ -131,6 +141,9 @@ std::string summary_table(const RunSummary& s) {
     text += value + '\n';
   };
   const auto count = [](std::uint64_t n) { return std::to_string(n); };
+  if (!s.localised) {
+    row("NEVER LOCALISED", "the robot's own zone was never known and in memory");
+  }
   row("budget", bytes_text(s.budget_bytes));
   row("most charged", bytes_text(s.peak_charged_bytes));
   row("cycles over a limit", count(s.budget_violations) + " of " + count(s.cycles));
@@ -142,17 +155,18 @@ std::string summary_table(const RunSummary& s) {
   row("read from storage", bytes_text(s.bytes_loaded));
   row("zone switches", count(s.zone_switches));
   row("first zone resident", s.zones_loaded == 0 ? "never" : "after " + fixed(s.start_s, 2) + " s");
-  row("own zone absent", fixed(s.zone_absent_s, 2) + " s");
+  row("own zone absent", s.localised ? fixed(s.zone_absent_s, 2) + " s" : "always");
   row("waiting for room", fixed(s.blocked_s, 2) + " s");
-  row("in a wrong zone", fixed(s.wrong_zone_s, 2) + " s");
+  if (s.wrong_zone_s) row("in a wrong zone", fixed(*s.wrong_zone_s, 2) + " s");
   if (s.pose_error_m) {
     row("pose error", "median " + fixed(s.pose_error_m->p50, 3) + " m, 95 % " +
                           fixed(s.pose_error_m->p95, 3) + " m, most " +
                           fixed(s.pose_error_m->max, 3) + " m");
   }
-  row("CAN frames", count(s.can_frames) + ", rejected " + count(s.can_rejected));
-  row("corrections used",
-      count(s.corrections_used) + ", rejected " + count(s.corrections_rejected));
+  row("CAN frames",
+      count(s.can_frames) + ", rejected " + with_reasons(s.can_rejected, s.can_rejected_why));
+  row("corrections used", count(s.corrections_used) + ", rejected " +
+                              with_reasons(s.corrections_rejected, s.corrections_rejected_why));
   row("event log", s.event_log_hash);
   if (s.live) {
     const auto timing = [](const LiveFigures::Timing& t) {

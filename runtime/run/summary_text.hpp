@@ -8,8 +8,9 @@
 
 namespace zonepack {
 
-// The summary as one JSON object, with the keys of RunSummary in their order; pose_error_m is null
-// without truth. Numbers print so that they read back exactly.
+// The summary as one JSON object, with the keys of RunSummary in their order; pose_error_m and
+// wrong_zone_s are null without truth, start_s and zone_absent_s when the robot was never
+// localised. Numbers print so that they read back exactly.
 std::string summary_json(const RunSummary& summary);
 
 // The summary as a table for people.

@@ -61,10 +61,6 @@ std::string found(const DbcToken& token) {
 DbcCursor::DbcCursor(std::string_view text, std::string path)
     : path_(std::move(path)), lexer_(text), now_(lexer_.next()), ahead_(lexer_.next()) {}
 
-bool DbcCursor::ended() const {
-  return now_.kind == Kind::kEnd || faults_.size() >= LoadedDbc::kMostFaults;
-}
-
 bool DbcCursor::begin_statement() {
   begin_ = now_;
   if (!is_statement_word(now_)) return fail("a statement such as BO_, SG_, CM_ or BA_");
@@ -99,16 +95,46 @@ bool DbcCursor::at_symbol() const {
 
 bool DbcCursor::at_statement() const { return now_.first_on_line && is_statement_word(now_); }
 
-void DbcCursor::add_fault(const DbcToken& at, const std::string& expected) {
+std::string DbcCursor::message(const DbcToken& at, const std::string& expected) const {
   const bool open = at.kind == Kind::kOpenText;
-  faults_.push_back(path_ + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) +
-                    ": expected " +
-                    (open ? "a quote at the end of the text that begins here" : expected) +
-                    ", found " + (open ? "the end of the file" : found(at)));
+  return path_ + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": expected " +
+         (open ? "a quote at the end of the text that begins here" : expected) + ", found " +
+         (open ? "the end of the file" : found(at));
+}
+
+void DbcCursor::add_fault(const DbcToken& at, const std::string& expected) {
+  if (found_.faults.size() < LoadedDbc::kMostFaults) {
+    found_.faults.push_back(message(at, expected));
+  }
+}
+
+void DbcCursor::add_slip(const DbcToken& at, const std::string& expected) {
+  newest_ = message(at, expected);
+  ++slip_count_;
+  if (found_.slips.size() < LoadedDbc::kMostFaults) found_.slips.push_back(newest_);
+}
+
+void DbcCursor::condemn() {
+  if (found_.faults.size() < LoadedDbc::kMostFaults) found_.faults.push_back(newest_);
+  if (!found_.slips.empty() && found_.slips.back() == newest_) found_.slips.pop_back();
+  --slip_count_;
+}
+
+DbcSlips DbcCursor::result() && {
+  if (slip_count_ > found_.slips.size()) {
+    found_.slips.push_back(path_ + ": " + std::to_string(slip_count_ - found_.slips.size()) +
+                           " more of the same kind");
+  }
+  return std::move(found_);
 }
 
 bool DbcCursor::fail(const std::string& expected) {
-  add_fault(now_, expected);
+  // What an open text swallows may be what is read.
+  if (now_.kind == Kind::kOpenText) {
+    add_fault(now_, expected);
+  } else {
+    add_slip(now_, expected);
+  }
   recover();
   return false;
 }
@@ -138,6 +164,17 @@ bool DbcCursor::number(double& into, const char* what) {
   into = negative ? -now_.number : now_.number;
   advance();
   return true;
+}
+
+void DbcCursor::limit(double& into) {
+  const bool negative = now_.is_sign('-');
+  if (negative || now_.is_sign('+')) advance();
+  const bool closed = ahead_.is_sign('|') || ahead_.is_sign(']');
+  if (now_.kind == Kind::kNumber && closed) into = negative ? -now_.number : now_.number;
+  while (now_.kind != Kind::kEnd && !now_.first_on_line && !now_.is_sign('|') &&
+         !now_.is_sign(']')) {
+    advance();
+  }
 }
 
 bool DbcCursor::whole(std::uint64_t& into, std::uint64_t most, const char* what) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -18,19 +19,33 @@ template <typename Named>
 std::vector<std::string> names_of(const std::vector<Named>& all) {
   std::vector<std::string> names;
   names.reserve(all.size());
-  for (const Named& one : all) names.push_back(one.name);
+  for (const Named& one : all) names.push_back(one.long_name.empty() ? one.name : one.long_name);
   return names;
 }
 
 // The first of that name, or null; `again` is the second of that name, or null.
 template <typename Named>
 const Named* only_one(const std::vector<Named>& all, std::string_view name, const Named*& again) {
-  const auto same = [name](const Named& one) { return one.name == name; };
+  const bool by_long_name = std::any_of(all.begin(), all.end(),
+                                        [name](const Named& one) { return one.long_name == name; });
+  const auto same = [&](const Named& one) {
+    return (by_long_name ? one.long_name : one.name) == name;
+  };
   const auto first = std::find_if(all.begin(), all.end(), same);
   if (first == all.end()) return nullptr;
   const auto second = std::find_if(first + 1, all.end(), same);
   again = second == all.end() ? nullptr : &*second;
   return &*first;
+}
+
+// "0x123" or "291".
+bool is_id(std::string_view text, std::uint32_t id) {
+  const bool hex = text.starts_with("0x") || text.starts_with("0X");
+  if (hex) text.remove_prefix(2);
+  std::uint32_t value = 0;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), value, hex ? 16 : 10);
+  return error == std::errc() && end == text.data() + text.size() && value == id;
 }
 
 std::string lines(std::uint32_t first, std::uint32_t second) {
@@ -97,6 +112,10 @@ Outcome<void> add_multiplexers(const DbcMessage& message, const DbcSignal& signa
     if (const auto fits = check_layout(message, *link->by); !fits) {
       return failure(link->by->name + ": " + fits.error().message);
     }
+    if (link->selected->values.empty()) {
+      return failure("its multiplexer mark m has no number, so nothing says when it is present");
+    }
+    if (!link->by->slip.empty()) return failure("its multiplexer: " + link->by->slip);
     bool first = true;
     for (const CanSignal::Values& values : link->selected->values) {
       if (!(first ? add_multiplexer(result, link->by->bits, values) : add_values(result, values))) {
@@ -110,6 +129,7 @@ Outcome<void> add_multiplexers(const DbcMessage& message, const DbcSignal& signa
 }
 
 Outcome<CanSignal> to_can_signal(const DbcMessage& message, const DbcSignal& signal) {
+  if (!signal.slip.empty()) return failure(signal.slip);
   CanSignal result;
   result.id = message.id;
   result.extended = message.extended;
@@ -128,19 +148,30 @@ Outcome<CanSignal> to_can_signal(const DbcMessage& message, const DbcSignal& sig
 DbcFile::DbcFile(std::string path, std::vector<DbcMessage> messages)
     : path_(std::move(path)), messages_(std::move(messages)) {}
 
-Outcome<const DbcMessage*> DbcFile::find_message(std::string_view name) const {
-  const DbcMessage* again = nullptr;
-  const DbcMessage* const message = only_one(messages_, name, again);
-  if (message == nullptr) {
+Outcome<const DbcMessage*> DbcFile::find_message(std::string_view full,
+                                                 std::string_view signal) const {
+  const std::size_t at = full.find('@');
+  const std::string_view name = full.substr(0, at);
+  std::vector<const DbcMessage*> named;
+  for (const DbcMessage& one : messages_) {
+    if (one.name != name && one.long_name != name) continue;
+    if (at == full.npos || is_id(full.substr(at + 1), one.id)) named.push_back(&one);
+  }
+  if (named.empty()) {
     return failure(
-        path_ + ": no message " + std::string(name) + known_words_text(name, names_of(messages_)),
+        path_ + ": no message " + std::string(full) + known_words_text(name, names_of(messages_)),
         ErrorCode::kNotFound);
   }
-  if (again != nullptr) {
-    return failure(path_ + ": " + lines(message->line, again->line) + " both define a message " +
-                   message->name + "; expected one");
+  if (named.size() == 1) return named.front();
+  std::vector<const DbcMessage*> holding;
+  for (const DbcMessage* const one : named) {
+    const DbcSignal* again = nullptr;
+    if (only_one(one->signals, signal, again) != nullptr) holding.push_back(one);
   }
-  return message;
+  if (holding.size() == 1) return holding.front();
+  return failure(path_ + ": " + lines(named[0]->line, named[1]->line) + " both define a message " +
+                 std::string(name) + "; say which one by its id: " + std::string(name) + "@" +
+                 std::to_string(named[0]->id) + "." + std::string(signal));
 }
 
 Outcome<const DbcSignal*> DbcFile::find_signal(const DbcMessage& message,
@@ -162,7 +193,8 @@ Outcome<const DbcSignal*> DbcFile::find_signal(const DbcMessage& message,
 
 Outcome<DbcFound> DbcFile::find(std::string_view name) const {
   const std::size_t dot = name.find('.');
-  const auto message = find_message(name.substr(0, dot));
+  const auto message =
+      find_message(name.substr(0, dot), dot == name.npos ? "" : name.substr(dot + 1));
   if (!message) return message.error();
   const DbcMessage& in = **message;
   if (dot == std::string_view::npos) {
@@ -189,10 +221,15 @@ LoadedDbc parse_dbc(std::string_view text, const std::string& path) {
     return loaded;
   }
   DbcParser parser(text, path);
-  loaded.faults = std::move(parser).faults();
-  // Each takes a part of its own: the faults went, the messages are still there.
+  DbcSlips found = std::move(parser).slips();
+  // Each takes a part of its own: the slips went, the messages are still there.
   // NOLINTNEXTLINE(bugprone-use-after-move)
-  if (loaded.ok()) loaded.file = DbcFile(path, std::move(parser).messages());
+  std::vector<DbcMessage> messages = std::move(parser).messages();
+  loaded.faults = std::move(found.faults);
+  loaded.slips = std::move(found.slips);
+  // Text that is no DBC file at all.
+  if (messages.empty() && loaded.ok()) std::swap(loaded.faults, loaded.slips);
+  if (loaded.ok()) loaded.file = DbcFile(path, std::move(messages));
   return loaded;
 }
 

@@ -21,6 +21,8 @@ struct DbcSignal {
   static constexpr std::int32_t kNone = -1;
 
   std::string name;
+  std::string long_name;  // over 32 characters; empty: it has none
+  std::string slip;       // why the statement could not be read; empty: it could
   std::string unit;
   SignalBits bits;  // any numbers; checked when the signal is asked for
   SignalType type = SignalType::kUnsigned;
@@ -38,6 +40,7 @@ struct DbcSignal {
 
 struct DbcMessage {
   std::string name;
+  std::string long_name;
   std::uint32_t id = 0;  // without the flag
   bool extended = false;
   std::uint32_t bytes = 0;
@@ -60,13 +63,15 @@ class DbcFile {
 
   const std::vector<DbcMessage>& messages() const noexcept { return messages_; }
 
-  // The signal of "Message.Signal". Fails when there is none (kNotFound) or it cannot be read: it
-  // does not fit its message, it is a float that is not 32 bits long. The message names the line.
+  // The signal of "Message.Signal", or of "Message@0x123.Signal" where several messages have that
+  // name; long names count too. Fails when there is none (kNotFound) or it cannot be read: it does
+  // not fit its message, it is a float that is not 32 bits long, its line has a slip. The message
+  // names the line.
   Outcome<DbcFound> find(std::string_view name) const;
 
  private:
-  // Never null.
-  Outcome<const DbcMessage*> find_message(std::string_view name) const;
+  // Never null. `signal` tells messages of one name apart where only one holds it.
+  Outcome<const DbcMessage*> find_message(std::string_view name, std::string_view signal) const;
   Outcome<const DbcSignal*> find_signal(const DbcMessage& message, std::string_view name) const;
 
   std::string path_;
@@ -78,11 +83,13 @@ struct LoadedDbc {
 
   DbcFile file;                     // meaningful only without faults
   std::vector<std::string> faults;  // "file:line:column: expected ..., found ..."
+  std::vector<std::string> slips;   // the same, of statements that could be done without
   std::string text;                 // of the file, if it could be read
   bool ok() const noexcept { return faults.empty(); }
 };
 
-// Reads a DBC file. Statements that do not affect reading signals are skipped. Memory is bounded:
+// Reads a DBC file. Statements that do not affect reading signals are skipped, and a slip costs its
+// statement only, unless nothing could be read at all. Memory is bounded:
 // at most kLargestDbc bytes, kMostDbcSignals signals. Throws only when memory runs out.
 inline constexpr std::size_t kLargestDbc = std::size_t{4} << 20;
 inline constexpr std::size_t kMostDbcSignals = 65536;

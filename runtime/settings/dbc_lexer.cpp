@@ -2,6 +2,7 @@
 #include "runtime/settings/dbc_lexer.hpp"
 
 #include <charconv>
+#include <limits>
 
 namespace zonepack {
 namespace {
@@ -31,10 +32,20 @@ std::size_t run_length(std::string_view text) noexcept {
   return length;
 }
 
+// A number beyond double is infinite, one too small for it 0: j1939.dbc as canmatrix ships it has
+// ranges of that kind.
+double beyond_double(std::string_view text) noexcept {
+  const bool small = text.find("e-") != std::string_view::npos ||
+                     text.find("E-") != std::string_view::npos || text[0] == '.' ||
+                     text.substr(0, text.find('.')).find_first_not_of('0') == text.npos;
+  return small ? 0 : std::numeric_limits<double>::infinity();
+}
+
 bool read_number(std::string_view text, double& number) noexcept {
   if (is_letter(text[0])) return false;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size();
+  if (error == std::errc::result_out_of_range) number = beyond_double(text);
+  return error != std::errc::invalid_argument && end == text.data() + text.size();
 }
 
 }  // namespace
@@ -54,8 +65,15 @@ void DbcLexer::advance() noexcept {
 }
 
 void DbcLexer::skip_blanks() noexcept {
-  while (!at_end() && (bytes_[at_] == ' ' || (bytes_[at_] >= '\t' && bytes_[at_] <= '\r'))) {
-    advance();
+  while (!at_end()) {
+    const char c = bytes_[at_];
+    if (bytes_.substr(at_).starts_with("//")) {
+      while (!at_end() && bytes_[at_] != '\n') advance();
+    } else if (c == ' ' || (c >= '\t' && c <= '\r')) {
+      advance();
+    } else {
+      return;
+    }
   }
 }
 

@@ -29,7 +29,8 @@ struct DbcToken {
 };
 
 // Cuts a DBC file into tokens. Accepts any bytes; \" within a text does not end it, as Vector's
-// tools and others write it. Blanks, tabs, CR, LF and a byte order mark separate tokens.
+// tools and others write it. Blanks, tabs, CR, LF, a byte order mark and comments (from // to the
+// end of the line, outside of texts) separate tokens.
 class DbcLexer {
  public:
   explicit DbcLexer(std::string_view bytes) noexcept;

@@ -11,15 +11,26 @@ namespace {
 constexpr std::uint64_t kExtendedFlag = 0x80000000;
 constexpr std::uint64_t kNoFrame = 0xC0000000;  // VECTOR__INDEPENDENT_SIG_MSG: signals of no frame
 constexpr std::string_view kCycleTime = "GenMsgCycleTime";
+constexpr std::string_view kLongSignal = "SystemSignalLongSymbol";  // of names over 32 characters
+constexpr std::string_view kLongMessage = "SystemMessageLongSymbol";
 
 }  // namespace
 
 DbcParser::DbcParser(std::string_view text, std::string path) : in_(text, std::move(path)) {
   while (!in_.ended()) statement();
   apply_cycle_times();
+  apply_long_names();
 }
 
+// A slip costs its statement, unless the statement may change how any signal is read.
 void DbcParser::statement() {
+  const std::size_t before = in_.slips();
+  read_statement();
+  if (in_.slips() == before) return;
+  if (in_.begin().is("SIG_VALTYPE_") || in_.begin().is("SG_MUL_VAL_")) in_.condemn();
+}
+
+void DbcParser::read_statement() {
   if (!in_.begin_statement()) return;
   const auto is = [this](std::string_view word) { return in_.begin().is(word); };
   if (is("VERSION")) {
@@ -77,13 +88,18 @@ void DbcParser::message() {
   message.line = in_.begin().line;
   std::uint64_t id = 0;
   std::uint64_t bytes = 0;
-  std::string_view name, sender;
+  std::string_view name;
   ignored_ = true;  // until the message is understood
   if (!in_.whole(id, 0xFFFFFFFF, "the message's id, a whole number up to 4294967295") ||
       !in_.word(name, "the message's name") || !in_.sign(':') ||
-      !in_.whole(bytes, 0xFFFF, "the message's length in bytes") ||
-      !in_.word(sender, "the sender's name (Vector__XXX: none)")) {
+      !in_.whole(bytes, 0xFFFF, "the message's length in bytes")) {
     return;
+  }
+  // The sender is not needed.
+  if (in_.at_statement() || in_.now().kind != DbcToken::Kind::kWord) {
+    in_.add_slip(in_.now(), "the sender's name (Vector__XXX: none)");
+  } else {
+    in_.advance();
   }
   if (id == kNoFrame) return;
   ignored_ = false;
@@ -100,11 +116,12 @@ void DbcParser::signal() {
   DbcSignal signal;
   signal.line = in_.begin().line;
   signal.column = in_.begin().column;
-  if (!signal_head(signal) || !signal_layout(signal) || !signal_scale(signal)) return;
-  receivers();
-  if (ignored_) return;
+  const bool read = signal_head(signal) && signal_layout(signal) && signal_scale(signal);
+  if (read) receivers();
+  if (ignored_ || signal.name.empty()) return;
+  if (!read) signal.slip = in_.newest_slip();
   if (messages_.empty()) {
-    in_.add_fault(in_.begin(), "a message (BO_) before its signals");
+    in_.add_slip(in_.begin(), "a message (BO_) before its signals");
     return;
   }
   if (++signals_ > kMostDbcSignals) {
@@ -124,6 +141,11 @@ bool DbcParser::signal_head(DbcSignal& signal) {
     if (signal.multiplexer) mark.remove_suffix(1);
     signal.multiplexed = mark.starts_with('m');
     if (signal.multiplexed) {
+      if (mark == "m" && !signal.multiplexer) {
+        in_.add_slip(in_.now(), "a number after the multiplexer mark m");
+        in_.advance();
+        return in_.sign(':');
+      }
       std::uint64_t value = 0;
       const auto [end, error] = std::from_chars(mark.data() + 1, mark.data() + mark.size(), value);
       if (error != std::errc() || end != mark.data() + mark.size()) {
@@ -157,12 +179,13 @@ bool DbcParser::signal_layout(DbcSignal& signal) {
 bool DbcParser::signal_scale(DbcSignal& signal) {
   std::string_view unit;
   if (!in_.sign('(') || !in_.number(signal.factor, "the factor") || !in_.sign(',') ||
-      !in_.number(signal.offset, "the offset") || !in_.sign(')') || !in_.sign('[') ||
-      !in_.number(signal.least, "the least value") || !in_.sign('|') ||
-      !in_.number(signal.most, "the largest value") || !in_.sign(']') ||
-      !in_.text(unit, "the unit, a text in quotes")) {
+      !in_.number(signal.offset, "the offset") || !in_.sign(')') || !in_.sign('[')) {
     return false;
   }
+  in_.limit(signal.least);
+  if (!in_.sign('|')) return false;
+  in_.limit(signal.most);
+  if (!in_.sign(']') || !in_.text(unit, "the unit, a text in quotes")) return false;
   signal.unit = unit;
   return true;
 }
@@ -217,6 +240,11 @@ void DbcParser::multiplex_values() {
 void DbcParser::attribute() {
   std::string_view name;
   if (!in_.text(name, "an attribute's name in quotes")) return;
+  if ((name == kLongSignal && in_.now().is("SG_")) ||
+      (name == kLongMessage && in_.now().is("BO_"))) {
+    long_name(name);
+    return;
+  }
   if (name != kCycleTime || !in_.now().is("BO_")) {
     in_.skip_statement();
     return;
@@ -227,6 +255,31 @@ void DbcParser::attribute() {
   double ms = 0;
   if (!in_.number(ms, "the cycle time in ms") || !in_.end_statement()) return;
   cycle_ms_[id] = ms;
+}
+
+// BA_ "SystemSignalLongSymbol" SG_ id signal "name" ;
+void DbcParser::long_name(std::string_view attribute) {
+  in_.advance();
+  LongName found;
+  std::string_view signal, name;
+  if (!in_.whole(found.id, 0xFFFFFFFF, "the message's id")) return;
+  if (attribute == kLongSignal && !in_.word(signal, "the signal's name")) return;
+  if (!in_.text(name, "the long name in quotes")) return;
+  found.signal = signal;
+  found.name = name;
+  if (!name.empty()) long_names_.push_back(std::move(found));
+  in_.end_statement();
+}
+
+// Last: until here statements use the short names.
+void DbcParser::apply_long_names() {
+  for (const LongName& found : long_names_) {
+    if (found.signal.empty()) {
+      if (DbcMessage* const message = message_with(found.id)) message->long_name = found.name;
+    } else if (DbcSignal* const signal = signal_of(found.id, found.signal)) {
+      signal->long_name = found.name;
+    }
+  }
 }
 
 // BA_DEF_DEF_ "name" value ;

@@ -18,10 +18,11 @@ class DbcParser {
   DbcParser(std::string_view text, std::string path);
 
   std::vector<DbcMessage> messages() && { return std::move(messages_); }
-  std::vector<std::string> faults() && { return std::move(in_).faults(); }
+  DbcSlips slips() && { return std::move(in_).result(); }
 
  private:
   void statement();
+  void read_statement();
   void symbols();
   void bit_timing();
   void nodes();
@@ -35,7 +36,9 @@ class DbcParser {
   void multiplex_values();
   void attribute();
   void attribute_default();
+  void long_name(std::string_view attribute);
   void apply_cycle_times();
+  void apply_long_names();
 
   DbcMessage* message_with(std::uint64_t id);
   DbcSignal* signal_of(std::uint64_t id, std::string_view name);
@@ -48,6 +51,12 @@ class DbcParser {
   std::size_t signals_ = 0;
   double default_cycle_ms_ = 0;
   std::map<std::uint64_t, double> cycle_ms_;
+  struct LongName {
+    std::uint64_t id = 0;
+    std::string signal;  // empty: of the message
+    std::string name;
+  };
+  std::vector<LongName> long_names_;
 };
 
 }  // namespace zonepack

@@ -19,9 +19,9 @@ struct Field {
       std::variant<double Section::*, std::uint32_t Section::*, std::uint64_t Section::*,
                    bool Section::*, std::string Section::*, std::vector<std::string> Section::*,
                    std::optional<ByteCount> Section::*, PayloadChoice Section::*,
-                   OdometryModel Section::*, WheelUnit Section::*, ByteOrder Section::*,
-                   SignalType Section::*, ReadMode Section::*, GpioBias Section::*,
-                   SafeLevel Section::*>;
+                   OdometryModel Section::*, WheelUnit Section::*, AngleUnit Section::*,
+                   ByteOrder Section::*, SignalType Section::*, ReadMode Section::*,
+                   GpioBias Section::*, SafeLevel Section::*>;
   const char* key;
   Member member;
   double least;
@@ -45,7 +45,12 @@ struct EnumWords<OdometryModel> {
 };
 template <>
 struct EnumWords<WheelUnit> {
-  static constexpr const char* kWords[] = {"metres", "radians", "turns", "rpm", "erpm", "ticks"};
+  static constexpr const char* kWords[] = {"metres", "radians", "turns",   "rpm", "erpm",
+                                           "ticks",  "km/h",    "degrees", "mm"};
+};
+template <>
+struct EnumWords<AngleUnit> {
+  static constexpr const char* kWords[] = {"radians", "degrees"};
 };
 template <>
 struct EnumWords<ByteOrder> {

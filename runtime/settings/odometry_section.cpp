@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "runtime/odometry/det_math.hpp"
 #include "runtime/settings/canopen_section.hpp"
 #include "runtime/settings/dbc_file.hpp"
+#include "runtime/settings/dbc_unit.hpp"
 #include "runtime/settings/field.hpp"
 #include "runtime/settings/nearest_word.hpp"
 
@@ -58,7 +60,9 @@ class SignalNames {
         can_.dbc_text.empty() ? load_dbc(can_.dbc) : parse_dbc(can_.dbc_text, can_.dbc);
     if (can_.dbc_text.empty()) can_.dbc_text = std::move(loaded.text);
     for (const std::string& fault : loaded.faults) faults_.add_complete(fault);
+    for (const std::string& slip : loaded.slips) faults_.add_warning(slip + "; left out");
     dbc_broken_ = !loaded.ok();
+    if (!loaded.slips.empty()) first_slip_ = "; what could not be read: " + loaded.slips.front();
     dbc_ = std::move(loaded.file);
   }
 
@@ -82,6 +86,15 @@ class SignalNames {
                     known_words_text(name, known));
   }
 
+  // The unit of a signal of the DBC file as it is written there; empty for any other name.
+  std::string unit_of(const std::string& name) const {
+    if (dbc_broken_ || can_.dbc.empty() || name.find('.') == std::string::npos) return {};
+    // Signals of the DBC file are added to can_.signals once they are resolved.
+    if (can_.signals.count(name) != 0 && from_dbc_.count(name) == 0) return {};
+    const Outcome<DbcFound> found = dbc_.find(name);
+    return found ? found->unit : std::string();
+  }
+
   // The longest GenMsgCycleTime of the messages asked for so far; 0 when none has one.
   double longest_cycle_s() const noexcept { return longest_cycle_s_; }
 
@@ -91,18 +104,21 @@ class SignalNames {
     if (dbc_broken_) return;
     const Outcome<DbcFound> found = dbc_.find(name);
     if (!found) {
-      faults_.add(section.mark_of(key), section.path_of(key), found.error().message);
+      faults_.add(section.mark_of(key), section.path_of(key), found.error().message + first_slip_);
       return;
     }
     longest_cycle_s_ = std::max(longest_cycle_s_, found->cycle_s.value_or(0));
     signal = found->signal;
     can_.signals.emplace(name, signal);
+    from_dbc_.insert(name);
   }
 
   CanSettings& can_;
   FaultList& faults_;
   DbcFile dbc_;
   bool dbc_broken_ = false;
+  std::set<std::string> from_dbc_;
+  std::string first_slip_;  // added to messages about signals that are not found
   double longest_cycle_s_ = 0;
 };
 
@@ -163,11 +179,38 @@ std::vector<SignalKey> signal_keys(const OdometrySettings& odometry) {
   return keys;
 }
 
+// What the signals of a unit measure, as a unit of a DBC file.
+DbcUnit as_dbc_unit(WheelUnit unit) {
+  using Kind = DbcUnit::Kind;
+  switch (unit) {
+    case WheelUnit::kMetres:
+      return {Kind::kLength, 1};
+    case WheelUnit::kMillimetres:
+      return {Kind::kLength, 0.001};
+    case WheelUnit::kKilometresPerHour:
+      return {Kind::kLength, 1000.0 / 3600};
+    case WheelUnit::kRadians:
+      return {Kind::kAngle, 1};
+    case WheelUnit::kDegrees:
+      return {Kind::kAngle, kDegree_rad};
+    case WheelUnit::kTurns:
+      return {Kind::kAngle, kTurn_rad};
+    case WheelUnit::kRpm:
+    case WheelUnit::kErpm:
+      return {Kind::kAngle, kTurn_rad / 60};
+    case WheelUnit::kTicks:
+      break;
+  }
+  return {Kind::kTicks, 1};
+}
+
 // Ground covered per unit of a wheel's signal, both sides alike.
 double metres_per_unit(const OdometrySettings& odometry) {
   double metres = odometry.scale;
   if (odometry.unit == WheelUnit::kMetres) return metres;
+  if (is_length(odometry.unit)) return metres * as_dbc_unit(odometry.unit).si;
   metres *= odometry.wheel_radius_m;
+  if (odometry.unit == WheelUnit::kDegrees) return metres * kDegree_rad / odometry.gear;
   if (odometry.unit != WheelUnit::kRadians) metres *= 2 * kPi;
   if (odometry.unit == WheelUnit::kRpm || odometry.unit == WheelUnit::kErpm) metres /= 60;
   if (odometry.unit == WheelUnit::kErpm) metres /= odometry.pole_pairs;
@@ -194,8 +237,11 @@ void check_units(const YamlSection& section, const OdometrySettings& odometry,
   if (unit == WheelUnit::kTicks && odometry.ticks_per_turn <= 0) {
     add("ticks_per_turn", "missing; unit: ticks needs it");
   }
-  if (unit == WheelUnit::kMetres && odometry.gear != 1) {
-    add("gear", "has no meaning for metres; leave it out, or tell the unit of the motor's signals");
+  if (unit == WheelUnit::kKilometresPerHour && reads_positions(odometry.wheels.model)) {
+    add("unit", "km/h is a speed, and the model reads positions; allowed: metres, mm");
+  }
+  if (is_length(unit) && odometry.gear != 1) {
+    add("gear", "has no meaning for metres; leave it out, or give the unit of the motor's signals");
   }
   const bool sides = !keys.empty() && is_left(keys[0].key);
   const char* const no_sides = "the model has no left and right side; use scale";
@@ -211,6 +257,75 @@ void check_units(const YamlSection& section, const OdometrySettings& odometry,
   }
 }
 
+// A unit of the DBC file against what odometry reads; `expected` names examples.
+Outcome<DbcUnit> usable_unit(const std::string& text, DbcUnit::Kind kind, bool per_time,
+                             const std::string& expected) {
+  const DbcUnit unit = parse_dbc_unit(text);
+  const bool ticks = unit.kind == DbcUnit::Kind::kTicks;
+  if (unit.kind == DbcUnit::Kind::kNone) return unit;
+  if (unit.kind == kind && (ticks || unit.per_time == per_time)) return unit;
+  return failure("the DBC file gives this signal the unit \"" + text + "\"; expected " + expected +
+                 " (or no unit). Correct the DBC file, or write the signal out in can.signals");
+}
+
+// Without the key `unit`, the unit of the first wheel in the DBC file decides.
+void adopt_dbc_unit(const YamlSection& section, const std::string& text, OdometrySettings& odometry,
+                    FaultList& faults) {
+  const DbcUnit unit = parse_dbc_unit(text);
+  if (section.has("unit")) return;
+  if (unit.kind == DbcUnit::Kind::kTicks) {
+    faults.add(section.mark(), section.path_of("unit"),
+               "missing; the DBC file counts in \"" + text +
+                   "\": give unit: ticks, ticks_per_turn and wheel_radius");
+    odometry.unit = WheelUnit::kTicks;
+    odometry.ticks_per_turn = 1;
+  }
+  if (unit.kind != DbcUnit::Kind::kAngle) return;
+  odometry.unit = WheelUnit::kRadians;
+  for (const WheelUnit same : {WheelUnit::kTurns, WheelUnit::kDegrees}) {
+    if (!unit.per_time && unit.si == as_dbc_unit(same).si) odometry.unit = same;
+  }
+  if (unit.per_time && unit.si == as_dbc_unit(WheelUnit::kRpm).si) odometry.unit = WheelUnit::kRpm;
+  if (!section.has("wheel_radius")) {
+    faults.add(section.mark(), section.path_of("wheel_radius"),
+               "missing; the DBC file gives \"" + text + "\", which becomes a way only with it");
+  }
+}
+
+// What a wheel's unit in the DBC file is in units of `odometry`; 1 when both agree.
+Outcome<double> wheel_conversion(const OdometrySettings& odometry, const std::string& text) {
+  const bool speeds = !reads_positions(odometry.wheels.model);
+  const DbcUnit wanted = as_dbc_unit(odometry.unit);
+  std::string expected = "ticks";
+  if (wanted.kind == DbcUnit::Kind::kLength) {
+    expected = speeds ? "a speed such as m/s, km/h, mm/s or mph" : "a length such as m or mm";
+  } else if (wanted.kind == DbcUnit::Kind::kAngle) {
+    expected = speeds ? "a speed of rotation such as rad/s, deg/s or rpm"
+                      : "an angle such as rad, deg or turns";
+  }
+  const auto unit = usable_unit(text, wanted.kind, speeds, expected + ", by odometry.unit");
+  if (!unit) return unit.error();
+  // Makers write rpm for electrical turns too.
+  if (unit->kind == DbcUnit::Kind::kNone || odometry.unit == WheelUnit::kErpm) return 1.0;
+  return unit->si == wanted.si ? 1.0 : unit->si / wanted.si;
+}
+
+// The same for what is not a wheel: steering (rad), yaw rate (rad/s), a twist's forward speed
+// (m/s).
+Outcome<double> si_of(const OdometrySettings& odometry, const std::string& key,
+                      const std::string& text) {
+  const bool forward = key == "forward";
+  const auto unit =
+      forward ? usable_unit(text, DbcUnit::Kind::kLength, true, "m/s, km/h, mm/s or mph")
+      : key == "steering"
+          ? usable_unit(text, DbcUnit::Kind::kAngle, false, "an angle such as rad or deg")
+          : usable_unit(text, DbcUnit::Kind::kAngle, true, "a yaw rate such as rad/s or deg/s");
+  if (!unit) return unit.error();
+  if (unit->kind != DbcUnit::Kind::kNone) return unit->si;
+  if (forward) return is_length(odometry.unit) ? as_dbc_unit(odometry.unit).si : 1.0;
+  return odometry.angle_unit == AngleUnit::kDegrees ? kDegree_rad : 1.0;
+}
+
 // The signals in the model's order, each with its sign, scale and unit.
 void resolve_signals(const YamlSection& section, SignalNames& names, OdometrySettings& odometry,
                      FaultList& faults) {
@@ -223,15 +338,27 @@ void resolve_signals(const YamlSection& section, SignalNames& names, OdometrySet
                "needs the signals of 3 or 4 wheels, has " + std::to_string(keys.size()));
     return;
   }
+  const bool on_wheels = wheels.model != OdometryModel::kTwist;
+  if (on_wheels && !keys.empty()) {
+    adopt_dbc_unit(section, names.unit_of(keys[0].name), odometry, faults);
+  }
   check_units(section, odometry, keys, faults);
   if (omni) wheels.geometry.omni_wheels = keys.size();
   const std::size_t rolling = WheelModel(wheels.model, wheels.geometry).wheels();
   const double metres = metres_per_unit(odometry);
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const std::string& key = keys[i].key;
-    names.resolve(section, omni ? "around" : key.c_str(), keys[i].name, wheels.signals[i]);
+    const char* const written = omni ? "around" : key.c_str();
+    const std::string unit = names.unit_of(keys[i].name);
+    names.resolve(section, written, keys[i].name, wheels.signals[i]);
+    const auto converted =
+        i < rolling ? wheel_conversion(odometry, unit) : si_of(odometry, key, unit);
+    if (!converted) {
+      faults.add(section.mark_of(written), section.path_of(written),
+                 "\"" + keys[i].name + "\": " + converted.error().message);
+    }
     double& scale = wheels.metres_per_unit[i];
-    scale = i < rolling ? metres : 1;
+    scale = (i < rolling ? metres : 1) * (converted ? *converted : 1);
     if (is_left(key)) scale *= odometry.scale_left;
     if (is_right(key)) scale *= odometry.scale_right;
     const auto& invert = odometry.invert;

@@ -95,6 +95,7 @@ LoadedSettings parse_settings(const std::string& text, const std::string& path,
     faults.add(error.mark, "", "not YAML: " + error.msg);
   }
   loaded.faults = faults.take();
+  loaded.warnings = faults.take_warnings();
   return loaded;
 }
 

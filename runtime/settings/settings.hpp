@@ -62,18 +62,36 @@ struct CanSettings {
 };
 
 // Units of wheels or, before the gear, of their motors. rpm: turns a minute; erpm: electrical turns
-// a minute; ticks: of an encoder. All but metres depend on the wheel's radius.
-enum class WheelUnit : std::uint8_t { kMetres, kRadians, kTurns, kRpm, kErpm, kTicks };
+// a minute; ticks: of an encoder. All but lengths depend on the wheel's radius.
+enum class WheelUnit : std::uint8_t {
+  kMetres,
+  kRadians,
+  kTurns,
+  kRpm,
+  kErpm,
+  kTicks,
+  kKilometresPerHour,
+  kDegrees,
+  kMillimetres
+};
+inline bool is_length(WheelUnit unit) noexcept {
+  return unit == WheelUnit::kMetres || unit == WheelUnit::kKilometresPerHour ||
+         unit == WheelUnit::kMillimetres;
+}
+
+// Unit of a steering angle and, per second, of a yaw rate.
+enum class AngleUnit : std::uint8_t { kRadians, kDegrees };
 
 // WheelOdometrySettings with its signals by name.
 struct OdometrySettings {
-  WheelUnit unit = WheelUnit::kMetres;  // of wheel signals after factor and offset
-  double wheel_radius_m = 0.14;         // for all but metres
-  double gear = 1;                      // turns of the motor for one of the wheel; not for metres
-  double pole_pairs = 1;                // of the motor, for erpm
-  double ticks_per_turn = 0;            // of what turns the encoder, for ticks; 0: not given
-  double scale = 1;                     // true over reported distance, from a calibration run
-  double scale_left = 1;                // on top of scale, for the wheels of one side
+  WheelUnit unit = WheelUnit::kMetres;         // of wheel signals after factor and offset
+  AngleUnit angle_unit = AngleUnit::kRadians;  // where the DBC file gives none
+  double wheel_radius_m = 0.14;                // for all but lengths
+  double gear = 1;            // turns of the motor for one of the wheel; not for metres
+  double pole_pairs = 1;      // of the motor, for erpm
+  double ticks_per_turn = 0;  // of what turns the encoder, for ticks; 0: not given
+  double scale = 1;           // true over reported distance, from a calibration run
+  double scale_left = 1;      // on top of scale, for the wheels of one side
   double scale_right = 1;
   std::vector<std::string> invert;  // keys of signals that count backwards
   std::string left, right;          // names of signals: differential
@@ -125,9 +143,10 @@ struct Settings {
 };
 
 struct LoadedSettings {
-  Settings settings;                // meaningful only without faults
-  std::vector<std::string> faults;  // all: "file:line: key: what is wrong; what is allowed"
-  std::string text;                 // the file's
+  Settings settings;                  // meaningful only without faults
+  std::vector<std::string> faults;    // all: "file:line: key: what is wrong; what is allowed"
+  std::vector<std::string> warnings;  // complete messages; the settings can be used all the same
+  std::string text;                   // the file's
   bool ok() const noexcept { return faults.empty(); }
 };
 

@@ -49,7 +49,8 @@ const Fields<CanSettings>& can_fields() {
   static const Fields<S> fields = {
       {"interface", &S::interface, 0, 0, "", "the bus whose frames are read; empty: any"},
       {"dbc", &S::dbc, 0, 0, "",
-       "DBC file; its signals are named MESSAGE.SIGNAL and come in addition to can.signals"},
+       "DBC file; its signals are named MESSAGE.SIGNAL and come in addition to can.signals. "
+       "MESSAGE@ID.SIGNAL where messages share a name"},
   };
   return fields;
 }
@@ -131,8 +132,14 @@ const Fields<WheelGeometry>& geometry_fields() {
 const Fields<OdometrySettings>& odometry_fields() {
   using S = OdometrySettings;
   static const Fields<S> fields = {
-      {"unit", &S::unit, 0, 0, "", "unit of the wheel signals (per second, for speeds)"},
-      {"wheel_radius", &S::wheel_radius_m, 0.001, 10, "m", "for every unit except metres"},
+      {"unit", &S::unit, 0, 0, "",
+       "unit of the wheel signals and of twist's forward speed (per second, for speeds). A unit "
+       "that the DBC file gives (km/h, mph, deg/s, rpm ...) is converted; one that contradicts "
+       "this key is refused"},
+      {"angle_unit", &S::angle_unit, 0, 0, "",
+       "unit of steering and (per second) yaw_rate, where the DBC file gives none"},
+      {"wheel_radius", &S::wheel_radius_m, 0.001, 10, "m",
+       "for every unit except metres, mm and km/h"},
       {"gear", &S::gear, 0.0001, 100000, "",
        "turns of the motor, which the signals count, for one turn of the wheel"},
       {"pole_pairs", &S::pole_pairs, 1, 1000, "", "pole pairs of the motor, for erpm"},
@@ -149,10 +156,10 @@ const Fields<OdometrySettings>& odometry_fields() {
        "signal of the left wheel: a name from can.signals, or MESSAGE.SIGNAL from can.dbc"},
       {"right", &S::right, 0, 0, "", "signal of the right wheel"},
       {"forward", &S::forward, 0, 0, "",
-       "twist: signal of the forward speed, m/s; ackermann: signal of the driven axle, in unit"},
-      {"yaw_rate", &S::yaw_rate, 0, 0, "", "twist: signal of the yaw rate, rad/s"},
+       "twist: signal of the forward speed; ackermann: signal of the driven axle, in unit"},
+      {"yaw_rate", &S::yaw_rate, 0, 0, "", "twist: signal of the yaw rate"},
       {"steering", &S::steering, 0, 0, "",
-       "ackermann: signal of the steering angle, rad; left is positive"},
+       "ackermann: signal of the steering angle; left is positive"},
       {"front_left", &S::front_left, 0, 0, "", "mecanum: signal of that wheel"},
       {"front_right", &S::front_right, 0, 0, "", "the same"},
       {"rear_left", &S::rear_left, 0, 0, "", "the same"},

@@ -233,6 +233,10 @@ Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const c
   return parse_word(node, value);
 }
 Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                                 AngleUnit& value) {
+  return parse_word(node, value);
+}
+Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*,
                                  ByteOrder& value) {
   return parse_word(node, value);
 }

@@ -24,12 +24,17 @@ class FaultList {
   // A complete message about another file.
   void add_complete(const std::string& text) { faults_.push_back(text); }
 
+  // What does not stop the settings from being used.
+  void add_warning(const std::string& text) { warnings_.push_back(text); }
+  std::vector<std::string> take_warnings() { return std::move(warnings_); }
+
   std::vector<std::string> take() { return std::move(faults_); }
   std::size_t size() const noexcept { return faults_.size(); }
 
  private:
   std::string file_;
   std::vector<std::string> faults_;
+  std::vector<std::string> warnings_;
 };
 
 // A mapping of a YAML file, read strictly: a key that was not asked for before finish() is a fault,
@@ -89,6 +94,7 @@ class YamlSection {
   static Outcome<void> parse(const YAML::Node&, double, double, const char*, PayloadChoice&);
   static Outcome<void> parse(const YAML::Node&, double, double, const char*, OdometryModel&);
   static Outcome<void> parse(const YAML::Node&, double, double, const char*, WheelUnit&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*, AngleUnit&);
   static Outcome<void> parse(const YAML::Node&, double, double, const char*, ByteOrder&);
   static Outcome<void> parse(const YAML::Node&, double, double, const char*, SignalType&);
   static Outcome<void> parse(const YAML::Node&, double, double, const char*, ReadMode&);

@@ -52,6 +52,40 @@ class OpeningADatabase : public ::testing::Test {
   fs::path path_ = folder_ / "map.db";
 };
 
+TEST_F(OpeningADatabase, CallsWhatStandsInForADatabaseByItsName) {
+  write(path_, "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 5\n");
+  EXPECT_THAT(refusal(path_),
+              HasSubstr("a Git LFS pointer, not the file itself; run: git lfs pull"));
+  write(path_, std::string("\x1F\x8B\x08") + std::string(40, 'x'));
+  EXPECT_THAT(refusal(path_), HasSubstr("compressed by gzip; run gunzip"));
+  write(path_, "PK\x03\x04" + std::string(40, 'x'));
+  EXPECT_THAT(refusal(path_), HasSubstr("a ZIP archive; run unzip"));
+}
+
+// No byte of the database is locked, so another program may write to it.
+TEST_F(OpeningADatabase, AWriteWhileItIsReadIsNoticed) {
+  write_rtabmap_database(path_, one_of_everything("0.23.8"));
+  const RtabmapDatabase database(path_);
+  EXPECT_NO_THROW(database.require_unchanged());
+  EXPECT_NO_THROW(database.reopen());
+  const fs::path journal = path_.string() + "-journal";
+  const auto refused = [&] {
+    try {
+      database.reopen();
+    } catch (const SqliteError& error) {
+      return std::string(error.what());
+    }
+    return std::string("not refused");
+  };
+  write(journal, "an unfinished commit");
+  EXPECT_THAT(refused(), HasSubstr("a write to it was interrupted"));
+  EXPECT_THROW(database.require_unchanged(), SqliteError);
+  fs::remove(journal);
+  EXPECT_NO_THROW(database.require_unchanged());
+  execute(path_, "UPDATE Node SET stamp = stamp + 1");
+  EXPECT_THAT(refused(), HasSubstr("changed while it was read; close RTAB-Map"));
+}
+
 TEST_F(OpeningADatabase, RefusesWhatIsNotThereOrNotAFile) {
   EXPECT_THAT(refusal(path_), HasSubstr("no such file"));
   EXPECT_THAT(refusal(folder_.path()), HasSubstr("is a folder"));

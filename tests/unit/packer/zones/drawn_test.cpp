@@ -14,6 +14,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 TEST(DrawnZones, RefusesTooFewVertices) {
   EXPECT_THAT(faults_of({zone("A", "[[0,0],[4,0],[0,0]]")}),
@@ -61,12 +62,42 @@ TEST(DrawnZones, KnowsWhichNamesAreFit) {
 
 TEST(DrawnZones, RefusesMultiPolygonsByName) {
   const std::string multi = R"({"type": "Feature", "properties": {"name": "M"}, "geometry":
-      {"type": "MultiPolygon", "coordinates": [[[[0,0],[1,0],[1,1],[0,0]]]]}})";
-  EXPECT_THAT(
-      faults_of({kLeft, multi}),
-      ElementsAre(AllOf(HasSubstr("'M'"), HasSubstr("MultiPolygon"), HasSubstr("split it"))));
+      {"type": "MultiPolygon", "coordinates": [[[[0,0],[1,0],[1,1],[0,0]]], [[[2,0],[3,0],[3,1],[2,0]]]]}})";
+  EXPECT_THAT(faults_of({kLeft, multi}),
+              ElementsAre(AllOf(HasSubstr("'M'"), HasSubstr("MultiPolygon of 2 parts"),
+                                HasSubstr("split it"))));
   EXPECT_THAT(faults_of({kLeft, R"({"type": "Feature", "properties": null, "geometry": null})"}),
               ElementsAre(HasSubstr("has no geometry")));
+}
+
+// As QGIS exports every layer.
+TEST(DrawnZones, ReadsMultiGeometriesOfOnePart) {
+  const auto multi = [](std::string feature, const std::string& type) {
+    const std::string key = "\"coordinates\": ";
+    const std::size_t from = feature.find(key) + key.size();
+    const std::size_t to = feature.rfind("}}");
+    feature = feature.substr(0, from) + "[" + feature.substr(from, to - from) + "]}}";
+    return feature.replace(feature.find("\"" + type), 1, "\"Multi");
+  };
+  const ZoneFile plain = parse({kLeft, kRight, kDoor});
+  const ZoneFile file =
+      parse({multi(kLeft, "Polygon"), multi(kRight, "Polygon"), multi(kDoor, "LineString")});
+  EXPECT_THAT(messages(file.findings.faults), IsEmpty());
+  ASSERT_EQ(file.plan.zones.size(), 2u);
+  EXPECT_EQ(file.plan.zones[0].polygon.outer, plain.plan.zones[0].polygon.outer);
+  ASSERT_EQ(file.plan.portals.size(), 1u);
+  EXPECT_EQ(file.plan.portals[0].name, "P1");
+}
+
+// 1e-5 degrees are 1.11 m of EPSG:3857.
+TEST(DrawnZones, DegreesAreCalledDegreesAndShownInFull) {
+  EXPECT_THAT(
+      faults_of({zone("A", "[[1e-5,2e-5],[4e-5,2e-5],[4e-5,3e-5],[1e-5,2e-5]]"),
+                 zone("B", "[[1e-5,3e-5],[4e-5,3e-5],[4e-5,5e-5],[1e-5,3e-5]]")}),
+      ElementsAre(AllOf(HasSubstr("between (1e-05, 2e-05) and (4e-05, 5e-05)"),
+                        HasSubstr("(1.11, 2.23) to (4.45, 5.57)"), HasSubstr("EPSG:3857"))));
+  EXPECT_THAT(faults_of({zone("A", "[[8.54,47.37],[8.541,47.37],[8.541,47.371],[8.54,47.37]]")}),
+              ElementsAre(HasSubstr("look like degrees")));
 }
 
 TEST(DrawnZones, RefusesPropertiesOfTheWrongKind) {

@@ -65,6 +65,39 @@ TEST(PoseFilter, ListsUpToFourHypothesesAndTrustsTheOneThatIsConfirmed) {
   EXPECT_LT(drive.error_m(), 1e-9);
 }
 
+// A wrong second fix would move the robot's zone, and the next one move it again.
+TEST(PoseFilter, WithoutTrustTheOlderHypothesisStaysCurrentUntilAnotherHasMoreSupport) {
+  Drive drive;
+  drive.steps(5);
+  EXPECT_EQ(drive.correct_now(), Verdict::kHypothesis);
+  for (int i = 1; i <= 6; ++i) {  // more than there is room for
+    drive.steps(50);
+    EXPECT_EQ(drive.correct_now(i * 5.0, 0, 0), Verdict::kHypothesis);
+    EXPECT_LT(drive.error_m(), 1e-9) << i;
+  }
+  drive.steps(50);
+  EXPECT_EQ(drive.correct_now(30, 0, 0), Verdict::kTrusted);
+  EXPECT_NEAR(drive.error_m(), 30, 1e-6);
+}
+
+TEST(PoseFilter, RefusesWhatNoPoseCanBe) {
+  Drive drive;
+  drive.steps(5);
+  const auto refused = [&](auto change) {
+    PoseCorrection fix = drive.fix(drive.now());
+    change(fix);
+    return drive.filter.correct(fix, drive.now()) == Verdict::kInvalid;
+  };
+  EXPECT_TRUE(refused([](PoseCorrection& fix) { fix.T_map_base.yaw_rad = 90; }));  // degrees
+  EXPECT_TRUE(refused([](PoseCorrection& fix) { fix.T_map_base.yaw_rad = -270; }));
+  EXPECT_TRUE(refused([](PoseCorrection& fix) { fix.T_map_base.x_m = 3e38; }));
+  EXPECT_TRUE(refused([](PoseCorrection& fix) { fix.T_map_base.y_m = -1e6; }));
+  EXPECT_TRUE(refused([](PoseCorrection& fix) { fix.sigma_x_m = 0; }));
+  EXPECT_TRUE(refused([](PoseCorrection& fix) { fix.sigma_yaw_rad = kInfinite; }));
+  EXPECT_FALSE(refused([](PoseCorrection& fix) { fix.T_map_base.yaw_rad = 6.25; }));
+  EXPECT_EQ(drive.filter.counters().invalid, 6u);
+}
+
 TEST(PoseFilter, AGivenStartIsAGuessThatHoldsUntilFixesAgree) {
   Drive drive;
   drive.filter.start_at(0, {}, 0.1, 0.05);

@@ -55,6 +55,7 @@ TEST(SummaryJson, HasTheKeysThatScriptsRelyOn) {
                                             "zones_unloaded",
                                             "bytes_loaded",
                                             "zone_switches",
+                                            "localised",
                                             "start_s",
                                             "zone_absent_s",
                                             "blocked_s",
@@ -70,6 +71,23 @@ TEST(SummaryJson, HasTheKeysThatScriptsRelyOn) {
   EXPECT_EQ(json["zone_absent_s"], 0.02);
   EXPECT_EQ(json["pose_error_m"]["p95"], 0.2);
   EXPECT_EQ(json["event_log_hash"], "ab");
+}
+
+TEST(SummaryJson, ClaimsNothingThatWasNotMeasured) {
+  RunSummary s = summary();
+  const auto json = nlohmann::json::parse(summary_json(s));
+  EXPECT_TRUE(json["wrong_zone_s"].is_null());
+  EXPECT_EQ(json["localised"], true);
+  EXPECT_EQ(summary_table(s).find("in a wrong zone"), std::string::npos);
+  s.wrong_zone_s = 0;
+  s.localised = false;
+  const auto lost = nlohmann::json::parse(summary_json(s));
+  EXPECT_EQ(lost["wrong_zone_s"], 0);
+  EXPECT_EQ(lost["localised"], false);
+  EXPECT_TRUE(lost["zone_absent_s"].is_null());
+  EXPECT_TRUE(lost["start_s"].is_null());
+  EXPECT_NE(summary_table(s).find("NEVER LOCALISED"), std::string::npos);
+  EXPECT_NE(summary_table(s).find("in a wrong zone"), std::string::npos);
 }
 
 TEST(SummaryJson, HasNoPoseErrorWithoutTruth) {

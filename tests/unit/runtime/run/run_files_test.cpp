@@ -42,6 +42,31 @@ TEST_F(RunFiles, ReadsCorrectionsToTheNanosecond) {
   EXPECT_EQ((*read)[1].sigma_y_m, -0.03);
 }
 
+// As spreadsheets, Windows and recorders of other programs write them.
+TEST_F(RunFiles, TakesHeadersCommasMarksAndNanoseconds) {
+  write(
+      "\xEF\xBB\xBFstamp,received,x,y,yaw,sigma_x,sigma_y,sigma_yaw\r\n"
+      "% a remark\r\n"
+      "1718021600000000123,1718021600.5, 1,2,\t0.5;0.1,0.1,0.1\r\n");
+  const auto read = read_corrections(path_);
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_EQ(read->size(), 1u);
+  EXPECT_EQ((*read)[0].stamp_ns, 1'718'021'600'000'000'123);
+  EXPECT_EQ((*read)[0].received_ns, 1'718'021'600'500'000'000);
+  EXPECT_EQ((*read)[0].T_map_base.y_m, 2);
+
+  write("\xEF\xBB\xBF#timestamp x y z\n1,3,4,0,0,0,0,1\n");
+  const auto truth = read_truth(path_);
+  ASSERT_TRUE(truth) << truth.error().message;
+  EXPECT_EQ(truth->samples()[0].T_map_base.x_m, 3);
+
+  // Only the first line may be names.
+  write("1 3 4 0 0 0 0 1\nt x y z qx qy qz qw\n");
+  EXPECT_THAT(read_truth(path_).error().message, HasSubstr(":2: \"t\" is not a stamp"));
+  write("version https://git-lfs.github.com/spec/v1\noid sha256:0\n");
+  EXPECT_THAT(read_truth(path_).error().message, HasSubstr("a Git LFS pointer"));
+}
+
 TEST_F(RunFiles, CorrectionsComeInOrderOfReception) {
   write("1 5 1 0 0 1 1 1\n3 4 2 0 0 1 1 1\n2 4 3 0 0 1 1 1\n");
   const auto read = read_corrections(path_);

@@ -64,11 +64,37 @@ TEST_F(Statistics, CountsTimeWithoutTheTrueZoneOnlyAfterTheFirstZoneIsThere) {
   EXPECT_DOUBLE_EQ(summary().zone_absent_s, 0.5);
 }
 
+TEST_F(Statistics, WithoutTruthNothingIsKnownOfWrongZones) {
+  RunStatistics blind(graph, needs, nullptr, kPeriod_ns, limits);
+  CycleRecord record;
+  record.state.zone = 0;
+  blind.after_cycle(record);
+  RunSummary s;
+  blind.summarise(s);
+  EXPECT_FALSE(s.wrong_zone_s);
+  EXPECT_FALSE(s.localised);
+  // A truth that ended before the run is none.
+  now_ns = 5'000'000'000;
+  cycle(0);
+  EXPECT_FALSE(summary().wrong_zone_s);
+}
+
+TEST_F(Statistics, IsLocalisedOnceTheRobotsOwnZoneIsThere) {
+  cycle(0);
+  hold(1, needs[1]);
+  cycle(0);
+  EXPECT_FALSE(summary().localised);
+  hold(0, needs[0]);
+  cycle(0);
+  EXPECT_TRUE(summary().localised);
+}
+
 TEST_F(Statistics, CallsTheTrackerWrongOnlyBeyondThirtyCentimetres) {
   // At 1 m/s: 0.1 m, 0.2 m, 0.3 m are within, 0.4 m and 0.5 m inside b are not.
   now_ns = 2'100'000'000;
   for (int i = 0; i < 5; ++i) cycle(0);
-  EXPECT_DOUBLE_EQ(summary().wrong_zone_s, 0.2);
+  ASSERT_TRUE(summary().wrong_zone_s);
+  EXPECT_DOUBLE_EQ(*summary().wrong_zone_s, 0.2);
 }
 
 TEST_F(Statistics, FindsALimitExceededThoughTheSumsOfResidencyDoNotShowIt) {
