@@ -12,6 +12,7 @@
 
 #include "packer/build/manifest_writer.hpp"
 #include "packer/build/map_folder.hpp"
+#include "packer/encode/packable.hpp"
 #include "packer/sources/rtabmap_database.hpp"
 #include "platform/base/require.hpp"
 
@@ -188,6 +189,13 @@ void MapBuilder::pack_zone(RtabmapDatabase& database, MapFolder& folder, std::si
       if (skipped_.insert(place.id).second) damages_.push_back(damaged.damage());
       continue;
     }
+    if (const auto unpackable = find_unpackable(record)) {
+      const std::lock_guard lock(mutex_);
+      if (skipped_.insert(place.id).second) {
+        damages_.push_back({place.id, unpackable->column, unpackable->problem});
+      }
+      continue;
+    }
     for (const Link& link : record.links) links_[zone].emplace_back(record.id, link.to);
     writer.add(record, static_cast<float>(place.p_map.x_m), static_cast<float>(place.p_map.y_m));
   }
@@ -199,12 +207,15 @@ void MapBuilder::refuse_damaged() const {
   if (damages_.empty() || options_.damaged == DamagedPolicy::kSkip) return;
   constexpr std::size_t kShown = 20;
   const std::vector<Damage> shown = sorted(damages_);
-  std::string text =
-      options_.database.string() + ": " + std::to_string(shown.size()) +
-      " damaged signatures; repair the database, or leave them out with --damaged skip";
+  std::string text = options_.database.string() + ": " + std::to_string(shown.size()) +
+                     (shown.size() == 1 ? " signature" : " signatures") +
+                     " damaged or beyond what a pack holds; repair the database, or leave them out "
+                     "with --damaged skip";
   for (std::size_t i = 0; i < std::min(shown.size(), kShown); ++i) {
-    text += "\n  signature " + std::to_string(shown[i].signature) + ", " + shown[i].column + ": " +
-            shown[i].problem;
+    // A row whose own id is wrong has no number to be named by.
+    const std::string which =
+        shown[i].signature == 0 ? "a signature" : "signature " + std::to_string(shown[i].signature);
+    text += "\n  " + which + ", " + shown[i].column + ": " + shown[i].problem;
   }
   if (shown.size() > kShown) text += "\n  and " + std::to_string(shown.size() - kShown) + " more";
   throw std::runtime_error(text);

@@ -49,9 +49,13 @@ ordered_json to_json(const Finding& finding) {
   return json;
 }
 
-ordered_json to_json(const std::vector<Finding>& findings) {
+ordered_json to_json(const FindingList& findings) {
   ordered_json list = ordered_json::array();
   for (const Finding& finding : findings) list.push_back(to_json(finding));
+  if (findings.left_out() > 0) {
+    list.push_back(to_json(
+        Finding{std::nullopt, 0, "", "and " + std::to_string(findings.left_out()) + " more"}));
+  }
   return list;
 }
 
@@ -172,8 +176,14 @@ int check_zones(const CheckZonesOptions& options, std::ostream& text, ordered_js
   for (const Finding& fault : findings.faults) {
     text << "fault: " << to_string(fault, options.zones) << "\n";
   }
+  if (findings.faults.left_out() > 0) {
+    text << "fault: and " << findings.faults.left_out() << " more\n";
+  }
   for (const Finding& warning : findings.warnings) {
     text << "warning: " << to_string(warning, options.zones) << "\n";
+  }
+  if (findings.warnings.left_out() > 0) {
+    text << "warning: and " << findings.warnings.left_out() << " more\n";
   }
   if (!plan.zones.empty()) print_zones(plan, counts, text);
   if (counts) print_signatures(*counts, plan, text);

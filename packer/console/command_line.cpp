@@ -41,10 +41,9 @@ CLI::Option* add_size_option(CLI::App& app, const std::string& name, ByteCount& 
           [&target, name](const std::string& text) {
             const auto size = parse_byte_count(text);
             if (!size) {
-              throw CLI::ValidationError(name,
-                                         "'" + text +
-                                             "' is no SIZE; give integer bytes, or with suffix "
-                                             "KiB, MiB or GiB, such as 8MiB");
+              throw CLI::ValidationError(name, "'" + text +
+                                                   "' is no SIZE; give bytes, or a number with a "
+                                                   "unit, such as 8MiB, 6.8MiB, 8M or 50MB");
             }
             target = *size;
           },

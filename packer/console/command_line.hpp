@@ -14,7 +14,7 @@
 // What the command lines of the subcommands share.
 namespace zonepack::packer {
 
-// Adds an option that takes a SIZE: integer bytes, or with suffix KiB, MiB, GiB.
+// Adds an option that takes a SIZE (byte_count.hpp): bytes, or with a unit.
 CLI::Option* add_size_option(CLI::App& app, const std::string& name, ByteCount& target,
                              const std::string& help);
 

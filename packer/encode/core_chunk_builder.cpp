@@ -17,8 +17,6 @@ namespace {
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 constexpr std::uint64_t kCoreFrameBytes = 160;
 constexpr std::uint64_t kTableBytes = 288;  // a Signature with every field, its vtable and padding
-constexpr std::size_t kLinksPerRecord = 32;
-constexpr std::size_t kMaxBlobBytes = 4096;
 
 const fb::Transform* to_struct(const std::optional<Transform>& transform) {
   static_assert(sizeof(fb::Transform) == sizeof(Transform));
@@ -36,10 +34,10 @@ std::uint64_t bound_of(const SignatureRecord& record) {
 }
 
 void check_length(const SignatureRecord& record, const char* column, std::size_t size) {
-  if (size <= kMaxBlobBytes) return;
+  if (size <= kMaxCoreBlobBytes) return;
   throw std::runtime_error("signature " + std::to_string(record.id) + ": " + column + " has " +
                            std::to_string(size) + " bytes; a pack holds at most " +
-                           std::to_string(kMaxBlobBytes) + " there");
+                           std::to_string(kMaxCoreBlobBytes) + " there");
 }
 
 // Any fixed order will do, since indices follow the order of insertion.
@@ -105,7 +103,7 @@ std::vector<CoreRecord> core_records(SignatureRecord& record, std::uint32_t ordi
   std::vector<CoreRecord> records;
   records.push_back(std::move(core));
   for (std::size_t i = 0; i < record.links.size(); ++i) {
-    if (i > 0 && i % kLinksPerRecord == 0) {
+    if (i > 0 && i % kLinksPerCoreRecord == 0) {
       CoreRecord more;
       more.ordinal = ordinal;
       more.continued = true;

@@ -9,6 +9,9 @@
 
 namespace zonepack::packer {
 
+inline constexpr std::size_t kMaxCoreBlobBytes = 4096;  // a label, a calibration
+inline constexpr std::size_t kLinksPerCoreRecord = 32;  // the rest goes to further records
+
 // What the core of a pack keeps of a signature: everything but its tables.
 struct CoreRecord {
   std::uint32_t ordinal = 0;

@@ -23,9 +23,10 @@ bool has_index(const SqliteFile& file, const std::string& by_key_query) {
 }  // namespace
 
 KeyedRows::KeyedRows(const SqliteFile& file, const std::string& columns, const std::string& table,
-                     const std::string& key)
+                     const std::string& key, std::uint64_t most_value_bytes)
     : indexed_(has_index(file, by_key(columns, table, key))),
-      query_(file, indexed_ ? by_key(columns, table, key) : by_rows(columns, table)) {
+      query_(file, indexed_ ? by_key(columns, table, key) : by_rows(columns, table),
+             most_value_bytes) {
   if (!indexed_) note_stretches(file, table, key);
 }
 

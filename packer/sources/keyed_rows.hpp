@@ -18,7 +18,7 @@ class KeyedRows {
  public:
   // `columns`: a SELECT list over `table`; `key`: the integer column that names the owner.
   KeyedRows(const SqliteFile& file, const std::string& columns, const std::string& table,
-            const std::string& key);
+            const std::string& key, std::uint64_t most_value_bytes = kLargestPlainValueBytes);
 
   void find(std::int64_t key);
   // The next row of the key; read its columns from row(). Throws SqliteError.

@@ -48,7 +48,7 @@ DataReader::DataReader(const SqliteFile& file, const RtabmapSchema& schema,
                        const PayloadSet& wanted)
     : wanted_(wanted),
       version_(schema.version()),
-      rows_(file, wanted_columns(schema, wanted), "Data", "id") {}
+      rows_(file, wanted_columns(schema, wanted), "Data", "id", kLargestValueBytes) {}
 
 bool DataReader::serves(const PayloadSet& wanted) const noexcept {
   return wanted.image == wanted_.image && wanted.depth == wanted_.depth &&

@@ -25,6 +25,7 @@ enum FeatureColumn {
   kDescriptor
 };
 
+constexpr std::size_t kMaxFeatures = 1'000'000;  // a thousand times what RTAB-Map stores
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 std::string describe(Features::DescriptorType type, std::size_t dim) {
@@ -67,6 +68,9 @@ void FeatureReader::read(const CellPlace& place, Features& out) {
   rows_.find(place.signature);
   const SqliteQuery& row = rows_.row();
   while (rows_.next()) {
+    if (out.count == kMaxFeatures) {
+      place.at("Feature.node_id").damaged("expected at most 1000000 rows, found more");
+    }
     out.word_id.push_back(int32_cell(row, kWordId, place.at("Feature.word_id")));
     out.x.push_back(float_cell(row, kPosX, place.at("Feature.pos_x")));
     out.y.push_back(float_cell(row, kPosY, place.at("Feature.pos_y")));

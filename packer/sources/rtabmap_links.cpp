@@ -21,6 +21,9 @@ enum LinkColumn {
   kTransVariance
 };
 
+constexpr std::size_t kMaxLinks = 1'000'000;
+constexpr std::size_t kMaxGlobalDescriptors = 65536;  // of one signature
+
 std::optional<Matrix> optional_matrix(const SqliteQuery& row, int column, const CellPlace& place,
                                       MatrixUnpacker& unpacker) {
   const auto blob = blob_cell(row, column, place);
@@ -36,7 +39,7 @@ LinkReader::LinkReader(const SqliteFile& file, const RtabmapSchema& schema)
     : rows_(file,
             schema.columns("Link", {"to_id", "type", "transform", "user_data", "information_matrix",
                                     "rot_variance", "trans_variance"}),
-            "Link", "from_id"),
+            "Link", "from_id", kLargestValueBytes),
       has_variances_(schema.has("Link", "rot_variance") && schema.has("Link", "trans_variance")) {}
 
 void LinkReader::read(const CellPlace& place, MatrixUnpacker& unpacker, std::vector<Link>& out) {
@@ -44,6 +47,9 @@ void LinkReader::read(const CellPlace& place, MatrixUnpacker& unpacker, std::vec
   rows_.find(place.signature);
   const SqliteQuery& row = rows_.row();
   while (rows_.next()) {
+    if (out.size() == kMaxLinks) {
+      place.at("Link.from_id").damaged("expected at most 1000000 rows, found more");
+    }
     Link link;
     link.to = int32_cell(row, kToId, place.at("Link.to_id"));
     link.type = int32_cell(row, kLinkType, place.at("Link.type"));
@@ -82,7 +88,7 @@ void LinkReader::read_information(const CellPlace& place, Link& link) const {
 
 GlobalDescriptorReader::GlobalDescriptorReader(const SqliteFile& file, const RtabmapSchema& schema)
     : rows_(file, schema.columns("GlobalDescriptor", {"type", "info", "data"}), "GlobalDescriptor",
-            "node_id") {}
+            "node_id", kLargestValueBytes) {}
 
 void GlobalDescriptorReader::read(const CellPlace& place, MatrixUnpacker& unpacker,
                                   std::vector<GlobalDescriptor>& out) {
@@ -90,6 +96,9 @@ void GlobalDescriptorReader::read(const CellPlace& place, MatrixUnpacker& unpack
   rows_.find(place.signature);
   const SqliteQuery& row = rows_.row();
   while (rows_.next()) {
+    if (out.size() == kMaxGlobalDescriptors) {
+      place.at("GlobalDescriptor.node_id").damaged("expected at most 65536 rows, found more");
+    }
     GlobalDescriptor descriptor;
     descriptor.type = int32_cell(row, 0, place.at("GlobalDescriptor.type"));
     descriptor.info = optional_matrix(row, 1, place.at("GlobalDescriptor.info"), unpacker);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "packer/sources/cells.hpp"
+#include "packer/sources/keyed_rows.hpp"
 #include "packer/sources/zlib_blob.hpp"
 
 namespace zonepack::packer {
@@ -21,37 +22,89 @@ void add_damage(MapOutline& outline, NodeOutline& node, const Damage& damage) {
   node.damaged = true;
 }
 
-std::int32_t node_id(const SqliteFile& file, const SqliteQuery& row) {
-  const std::int64_t id = row.integer(0);
-  if (row.type(0) != SQLITE_INTEGER || id < 1 || id > std::numeric_limits<std::int32_t>::max()) {
-    throw SqliteError(file.name() + ": Node.id holds '" + std::string(row.text(0)) +
-                      "', expected whole numbers from 1 to 2147483647");
+// SQLite follows a page as often as others refer to it, and then rows come again.
+[[noreturn]] void refuse_order(const SqliteFile& file, std::int32_t id, std::int32_t before) {
+  throw SqliteError(file.name() + ": the rows of Node are out of order, " + std::to_string(id) +
+                    " after " + std::to_string(before) +
+                    ": its pages refer to each other; copy the file again");
+}
+
+// Reads the row of one node into the outline. Rows come in order of id.
+void take_node(const SqliteFile& file, const SqliteQuery& row, std::int32_t id,
+               MapOutline& outline) {
+  if (!outline.nodes.empty() && outline.nodes.back().id > id) {
+    refuse_order(file, id, outline.nodes.back().id);
   }
-  return static_cast<std::int32_t>(id);
+  NodeOutline node;
+  node.id = id;
+  std::optional<Damage> damage;
+  try {
+    read_node(row, CellPlace{&file.name(), id, "Node"}, node);
+  } catch (const DamagedSignature& error) {
+    damage = error.damage();
+  }
+  if (node.weight == kDeletedWeight) {
+    ++outline.deleted_nodes;
+    return;
+  }
+  if (!outline.nodes.empty() && outline.nodes.back().id == id) {
+    damage = Damage{id, "Node.id", "expected one row, found two"};
+  } else {
+    outline.nodes.push_back(std::move(node));
+  }
+  if (damage) add_damage(outline, outline.nodes.back(), *damage);
+}
+
+// The id of the row; nullopt, and a damage without a signature, where a pack has no place for it.
+std::optional<std::int32_t> node_id(const SqliteQuery& row, MapOutline& outline) {
+  const std::int64_t id = row.integer(0);
+  if (row.type(0) == SQLITE_INTEGER && id >= 1 && id <= std::numeric_limits<std::int32_t>::max()) {
+    return static_cast<std::int32_t>(id);
+  }
+  outline.damages.push_back({0, "Node.id",
+                             "holds '" + std::string(row.text(0).substr(0, 40)) +
+                                 "', expected whole numbers from 1 to 2147483647"});
+  return std::nullopt;
+}
+
+// Where a row of Node cannot be read: the ids alone first, which take no values off other pages,
+// then each row for itself, so that only those that cannot be read are damaged.
+void read_nodes_one_by_one(const SqliteFile& file, const RtabmapSchema& schema,
+                           MapOutline& outline) {
+  outline.nodes.clear();
+  outline.damages.clear();
+  outline.deleted_nodes = 0;
+  std::vector<std::int32_t> ids;
+  SqliteQuery all(file, "SELECT id FROM Node ORDER BY id");
+  while (all.step()) {
+    const auto id = node_id(all, outline);
+    if (!id || (!ids.empty() && ids.back() == *id)) continue;
+    if (!ids.empty() && ids.back() > *id) refuse_order(file, *id, ids.back());
+    ids.push_back(*id);
+  }
+  KeyedRows rows(file, node_columns(schema), "Node", "id");
+  for (const std::int32_t id : ids) {
+    try {
+      rows.find(id);
+      while (rows.next()) take_node(file, rows.row(), id, outline);
+    } catch (const SqliteCorrupt& error) {
+      if (outline.nodes.empty() || outline.nodes.back().id != id) {
+        outline.nodes.push_back({});
+        outline.nodes.back().id = id;
+      }
+      add_damage(outline, outline.nodes.back(), {id, "Node", error.problem()});
+    }
+  }
 }
 
 void read_nodes(const SqliteFile& file, const RtabmapSchema& schema, MapOutline& outline) {
-  SqliteQuery row(file, "SELECT " + node_columns(schema) + " FROM Node ORDER BY id");
-  while (row.step()) {
-    NodeOutline node;
-    node.id = node_id(file, row);
-    const CellPlace place{&file.name(), node.id, "Node"};
-    std::optional<Damage> damage;
-    try {
-      read_node(row, place, node);
-    } catch (const DamagedSignature& error) {
-      damage = error.damage();
+  try {
+    SqliteQuery row(file, "SELECT " + node_columns(schema) + " FROM Node ORDER BY id");
+    while (row.step()) {
+      if (const auto id = node_id(row, outline)) take_node(file, row, *id, outline);
     }
-    if (node.weight == kDeletedWeight) {
-      ++outline.deleted_nodes;
-      continue;
-    }
-    if (!outline.nodes.empty() && outline.nodes.back().id == node.id) {
-      damage = Damage{node.id, "Node.id", "expected one row, found two"};
-    } else {
-      outline.nodes.push_back(std::move(node));
-    }
-    if (damage) add_damage(outline, outline.nodes.back(), *damage);
+  } catch (const SqliteCorrupt&) {
+    read_nodes_one_by_one(file, schema, outline);
   }
 }
 
@@ -100,8 +153,10 @@ void assign_pose(const SqliteFile& file, MapOutline& outline, std::int32_t id,
 
 void read_optimised_poses(const SqliteFile& file, const RtabmapSchema& schema,
                           MapOutline& outline) {
-  SqliteQuery row(file, "SELECT " + schema.columns("Admin", {"opt_ids", "opt_poses"}) +
-                            " FROM Admin WHERE version IS NOT NULL");
+  SqliteQuery row(file,
+                  "SELECT " + schema.columns("Admin", {"opt_ids", "opt_poses"}) +
+                      " FROM Admin WHERE version IS NOT NULL",
+                  kLargestValueBytes);
   if (!row.step()) return;
   const AdminMatrix ids = admin_matrix(file, row, 0, "Admin.opt_ids", kInt32);
   const AdminMatrix poses = admin_matrix(file, row, 1, "Admin.opt_poses", kFloat32);
@@ -131,10 +186,12 @@ void count_unlinked(MapOutline& outline) {
 }
 
 void read_optimised_map(const SqliteFile& file, const RtabmapSchema& schema, MapOutline& outline) {
-  SqliteQuery row(file, "SELECT " +
-                            schema.columns("Admin", {"opt_map", "opt_map_x_min", "opt_map_y_min",
-                                                     "opt_map_resolution"}) +
-                            " FROM Admin WHERE version IS NOT NULL");
+  SqliteQuery row(file,
+                  "SELECT " +
+                      schema.columns("Admin", {"opt_map", "opt_map_x_min", "opt_map_y_min",
+                                               "opt_map_resolution"}) +
+                      " FROM Admin WHERE version IS NOT NULL",
+                  kLargestValueBytes);
   if (!row.step()) return;
   AdminMatrix cells = admin_matrix(file, row, 0, "Admin.opt_map", kInt8);
   if (!cells.present) return;
@@ -176,7 +233,8 @@ std::string blob_sum(const RtabmapSchema& schema, std::initializer_list<const ch
 void read_totals(const SqliteFile& file, const RtabmapSchema& schema, MapOutline& outline) {
   const std::string& features = schema.feature_table();
   if (schema.has(features)) {
-    std::string sql = "SELECT count(*) FROM " + features;
+    // SQLite walks the pages for a plain count(*) without counting steps.
+    std::string sql = "SELECT sum(1) FROM " + features;
     if (outline.deleted_nodes != 0) {
       sql += " WHERE node_id IN (SELECT id FROM Node WHERE weight IS NOT -9)";
     }
@@ -189,7 +247,7 @@ void read_totals(const SqliteFile& file, const RtabmapSchema& schema, MapOutline
   }
   if (schema.has("Link")) {
     outline.links_to_missing_nodes = count(
-        file, "SELECT count(*) FROM Link WHERE to_id > 0 AND to_id NOT IN (SELECT id FROM Node)");
+        file, "SELECT sum(1) FROM Link WHERE to_id > 0 AND to_id NOT IN (SELECT id FROM Node)");
   }
 }
 

@@ -117,15 +117,32 @@ SqliteFile::SqliteFile(const fs::path& path) : name_(path.string()) {
   file_ = file;
   refuse_if_not_closed(file, name_);
   sqlite3* handle = nullptr;
+  std::error_code no_size;
+  const std::uintmax_t size = fs::file_size(file, no_size);
+  guard_ = std::make_unique<SqliteGuard>(no_size ? 0 : size);
   const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
   const int code = sqlite3_open_v2(immutable_uri(file).c_str(), &handle, flags, nullptr);
   handle_.reset(handle);
   if (code != SQLITE_OK) {
     throw SqliteError(name_ + ": cannot be opened: " + sqlite3_errstr(code));
   }
-  sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-  sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-  sqlite3_exec(handle, "PRAGMA cell_size_check=ON", nullptr, nullptr, nullptr);
+  // The file's header may ask for a cache of any size.
+  sqlite3_exec(handle, "PRAGMA cell_size_check=ON; PRAGMA cache_size=-2000", nullptr, nullptr,
+               nullptr);
+  guard_->protect(handle);
+}
+
+void SqliteFile::refuse_unless_table(const std::string& table) const {
+  SqliteQuery query(*this, "SELECT type, sql FROM sqlite_master WHERE lower(name)=lower('" + table +
+                               "') AND type<>'index' AND type<>'trigger'");
+  while (query.step()) {
+    const std::string kind =
+        kind_unless_table(std::string(query.text(0)), std::string(query.text(1)));
+    if (kind.empty()) continue;
+    throw SqliteError(name_ + ": " + table + " is " + kind +
+                      ", which is never run; expected a table, as RTAB-Map writes it; get the "
+                      "database from where it was made");
+  }
 }
 
 void SqliteFile::require_unchanged() const {
@@ -142,13 +159,21 @@ void SqliteFile::require_unchanged() const {
 }
 
 std::vector<std::string> SqliteFile::columns(const std::string& table) const {
-  SqliteQuery query(*this, "SELECT lower(name) FROM pragma_table_info('" + table + "')");
+  refuse_unless_table(table);
+  // The function pragma_table_info() would be a virtual table.
+  SqliteQuery query(*this, "PRAGMA table_info(" + table + ")");
   std::vector<std::string> names;
-  while (query.step()) names.emplace_back(query.text(0));
+  while (query.step()) {
+    std::string& name = names.emplace_back(query.text(1));
+    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
   return names;
 }
 
-SqliteQuery::SqliteQuery(const SqliteFile& file, const std::string& sql) : file_(&file) {
+SqliteQuery::SqliteQuery(const SqliteFile& file, const std::string& sql,
+                         std::uint64_t most_value_bytes)
+    : file_(&file), most_value_bytes_(most_value_bytes) {
+  file.guard().start_statement();
   sqlite3_stmt* statement = nullptr;
   const int code = sqlite3_prepare_v3(file.handle(), sql.data(), static_cast<int>(sql.size()),
                                       SQLITE_PREPARE_PERSISTENT, &statement, nullptr);
@@ -156,7 +181,10 @@ SqliteQuery::SqliteQuery(const SqliteFile& file, const std::string& sql) : file_
   if (code != SQLITE_OK) fail();
 }
 
-void SqliteQuery::restart() { sqlite3_reset(statement_.get()); }
+void SqliteQuery::restart() {
+  sqlite3_reset(statement_.get());
+  file_->guard().start_statement();
+}
 
 void SqliteQuery::restart(std::int64_t first) {
   restart();
@@ -178,6 +206,24 @@ std::string_view SqliteQuery::text(int column) const {
 void SqliteQuery::fail() const {
   const int code = sqlite3_errcode(file_->handle());
   const std::string reason = sqlite3_errmsg(file_->handle());
+  const SqliteGuard& guard = file_->guard();
+  if (code == SQLITE_TOOBIG) {
+    throw SqliteCorrupt(file_->name(), "expected values of at most " +
+                                           std::to_string(most_value_bytes_) +
+                                           " bytes, found a longer one");
+  }
+  if (code == SQLITE_INTERRUPT && guard.exhausted()) {
+    throw SqliteError(file_->name() + ": reading it took more than " +
+                      std::to_string(guard.connection_limit()) +
+                      " steps, more than a file of its size needs: its pages or indexes refer to "
+                      "each other; copy the file again");
+  }
+  if (code == SQLITE_INTERRUPT) {
+    throw SqliteCorrupt(file_->name(), "expected a statement to end within " +
+                                           std::to_string(guard.statement_limit()) +
+                                           " steps, as for a whole file of this size: its pages or "
+                                           "indexes refer to each other; copy the file again");
+  }
   if (code != SQLITE_CORRUPT && code != SQLITE_NOTADB) {
     throw SqliteError(file_->name() + ": " + reason);
   }

@@ -13,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "packer/sources/sqlite_guard.hpp"
+
 namespace zonepack::packer {
 
 // The file is not a database, or a part of it cannot be read. The message names the file and says
@@ -22,7 +24,8 @@ class SqliteError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Some pages of the file are not what SQLite wrote. problem() is the message without the file.
+// A part of the file is not what SQLite or RTAB-Map writes: damaged pages, a value over its limit,
+// a statement that does not end. problem() is the message without the file.
 class SqliteCorrupt : public SqliteError {
  public:
   SqliteCorrupt(const std::string& file, const std::string& problem)
@@ -59,16 +62,22 @@ class SqliteFile {
   const std::string& name() const noexcept { return name_; }  // the path as given
   sqlite3* handle() const noexcept { return handle_.get(); }
 
-  // Lower-case column names of a table; empty when there is no such table.
+  // Lower-case column names of a table; empty when there is no such table. Refuses a view or a
+  // virtual table of that name.
   std::vector<std::string> columns(const std::string& table) const;
 
+  SqliteGuard& guard() const noexcept { return *guard_; }
+
  private:
+  void refuse_unless_table(const std::string& table) const;
+
   struct Close {
     void operator()(sqlite3* handle) const noexcept { sqlite3_close_v2(handle); }
   };
   std::string name_;
   std::filesystem::path file_;  // without links
   FileState state_;
+  std::unique_ptr<SqliteGuard> guard_;  // outlives the connection
   std::unique_ptr<sqlite3, Close> handle_;
 };
 
@@ -76,7 +85,9 @@ class SqliteFile {
 // the next step(), restart() or destruction.
 class SqliteQuery {
  public:
-  SqliteQuery(const SqliteFile& file, const std::string& sql);
+  // A row with a value of more than `most_value_bytes` throws SqliteCorrupt before it is read.
+  SqliteQuery(const SqliteFile& file, const std::string& sql,
+              std::uint64_t most_value_bytes = kLargestPlainValueBytes);
 
   // Starts over with the given values for ?1, ?2.
   void restart();
@@ -85,6 +96,7 @@ class SqliteQuery {
 
   // The next row; false when there is none. Throws SqliteError where the file cannot be read.
   bool step() {
+    file_->guard().allow_values_of(most_value_bytes_);
     const int code = sqlite3_step(statement_.get());
     if (code == SQLITE_ROW) return true;
     if (code == SQLITE_DONE) return false;
@@ -109,6 +121,7 @@ class SqliteQuery {
   [[noreturn]] void fail() const;
 
   const SqliteFile* file_;
+  std::uint64_t most_value_bytes_;
   std::unique_ptr<sqlite3_stmt, Finalize> statement_;
 };
 

@@ -16,6 +16,9 @@ std::string describe_faults(const Findings& findings, const std::string& file) {
   std::string text = file + ": " + std::to_string(count) + (count == 1 ? " fault" : " faults") +
                      " in the zone file";
   for (const Finding& fault : findings.faults) text += "\n  " + to_string(fault, file);
+  if (findings.faults.left_out() > 0) {
+    text += "\n  and " + std::to_string(findings.faults.left_out()) + " more";
+  }
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/pack_format/file/geometry.hpp"
@@ -18,9 +19,36 @@ struct Finding {
   std::string message;                 // complete: what was found, what was expected, what to do
 };
 
+// Findings in the order they were made. Of more than kMost only the number is kept, so that a file
+// in which everything is wrong costs neither memory nor screens of text.
+class FindingList {
+ public:
+  static constexpr std::size_t kMost = 1000;
+  using value_type = Finding;
+  using const_iterator = std::vector<Finding>::const_iterator;
+
+  void push_back(Finding finding) {
+    if (kept_.size() < kMost) {
+      kept_.push_back(std::move(finding));
+    } else {
+      ++left_out_;
+    }
+  }
+  bool empty() const noexcept { return kept_.empty(); }
+  std::size_t size() const noexcept { return kept_.size() + left_out_; }  // with those left out
+  std::size_t left_out() const noexcept { return left_out_; }
+  const_iterator begin() const noexcept { return kept_.begin(); }  // of those kept
+  const_iterator end() const noexcept { return kept_.end(); }
+  const Finding& operator[](std::size_t i) const noexcept { return kept_[i]; }
+
+ private:
+  std::vector<Finding> kept_;
+  std::size_t left_out_ = 0;
+};
+
 struct Findings {
-  std::vector<Finding> faults;    // the file is rejected
-  std::vector<Finding> warnings;  // the file is accepted, but a person should look at it
+  FindingList faults;    // the file is rejected
+  FindingList warnings;  // the file is accepted, but a person should look at it
 };
 
 // "FILE:LINE: message", without the line when unknown.

@@ -15,6 +15,9 @@ using nlohmann::json;
 // GeoJSON needs 8 levels; copying and printing a value take stack for each one.
 constexpr int kMaxDepth = 64;
 struct TooDeep {};
+struct TooLarge {
+  std::string what;
+};
 
 // Feeds the text to the JSON parser and counts the lines consumed.
 class LineCountingIterator {
@@ -52,6 +55,12 @@ class ParseObserver {
 
   bool operator()(int depth, json::parse_event_t event, const json& parsed) {
     if (depth > kMaxDepth) throw TooDeep{};
+    const bool begins = event == json::parse_event_t::value ||
+                        event == json::parse_event_t::array_start ||
+                        event == json::parse_event_t::object_start;
+    if (begins && ++values_ > kMaxJsonValues) {
+      throw TooLarge{"more than " + std::to_string(kMaxJsonValues) + " values"};
+    }
     switch (event) {
       case json::parse_event_t::object_start:
         if (depth == 2 && section_ == "features") feature_lines_.push_back(line_);
@@ -63,7 +72,10 @@ class ParseObserver {
       case json::parse_event_t::key: {
         const auto& key = parsed.get_ref<const std::string&>();
         if (depth == 1) section_ = key;
-        if (!keys_.back().insert(key).second) report_twice(key);
+        if (!keys_.back().names.insert(key).second) report_twice(key);
+        if (++keys_.back().count > kMaxJsonKeys) {
+          throw TooLarge{"an object of more than " + std::to_string(kMaxJsonKeys) + " keys"};
+        }
         break;
       }
       default:
@@ -87,7 +99,12 @@ class ParseObserver {
   const std::size_t& line_;
   Findings& findings_;
   std::string section_;
-  std::vector<std::set<std::string>> keys_;
+  struct Keys {
+    std::set<std::string> names;
+    std::size_t count = 0;
+  };
+  std::vector<Keys> keys_;
+  std::size_t values_ = 0;
   std::vector<std::size_t> feature_lines_;
 };
 
@@ -119,6 +136,9 @@ std::vector<GeoJsonFeature> read_features(std::string_view text, Findings& findi
   } catch (const TooDeep&) {
     fault(line,
           "nested more than " + std::to_string(kMaxDepth) + " levels deep; this is no drawing");
+    return {};
+  } catch (const TooLarge& found) {
+    fault(line, "holds " + found.what + ", too many for a drawing; simplify it");
     return {};
   } catch (const json::parse_error& error) {
     fault(line, "not valid JSON: " + plain_reason(error.what()));

@@ -11,6 +11,11 @@
 // Parses GeoJSON into a list of features that know their lines.
 namespace zonepack::packer {
 
+// A larger file is no drawing of a building: a hospital of 50 zones has 26 kB.
+inline constexpr std::size_t kMaxZoneFileBytes = std::size_t{64} << 20;
+inline constexpr std::size_t kMaxJsonValues = 4'000'000;  // numbers, texts, lists, objects
+inline constexpr std::size_t kMaxJsonKeys = 10'000;       // of one object
+
 struct GeoJsonFeature {
   std::size_t index = 0;  // index in the file's list, from 0
   std::size_t line = 0;   // where it begins, from 1

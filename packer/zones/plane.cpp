@@ -5,16 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "packer/zones/edge_rows.hpp"
+
 namespace zonepack::packer {
 namespace {
 
 double cross(Point2 o, Point2 a, Point2 b) noexcept {
   return (a.x_m - o.x_m) * (b.y_m - o.y_m) - (a.y_m - o.y_m) * (b.x_m - o.x_m);
-}
-
-Box2 box_of(const Segment2& s) noexcept {
-  return {{std::min(s.p.x_m, s.q.x_m), std::min(s.p.y_m, s.q.y_m)},
-          {std::max(s.p.x_m, s.q.x_m), std::max(s.p.y_m, s.q.y_m)}};
 }
 
 std::vector<Segment2> edges_of(const Polygon& polygon) {
@@ -23,14 +20,53 @@ std::vector<Segment2> edges_of(const Polygon& polygon) {
   return edges;
 }
 
-// The x at which the edges pass height y, ascending; even-odd pairs are inside.
-void passes_at(const std::vector<Segment2>& edges, double y, std::vector<double>& xs) {
-  xs.clear();
-  for (const Segment2& e : edges) {
-    if ((e.p.y_m > y) == (e.q.y_m > y)) continue;
-    xs.push_back(e.p.x_m + (y - e.p.y_m) / (e.q.y_m - e.p.y_m) * (e.q.x_m - e.p.x_m));
+// The edges of an outline that pass a height which only grows.
+class PassingEdges {
+ public:
+  explicit PassingEdges(const std::vector<Segment2>& edges) {
+    for (const Segment2& e : edges) {
+      if (e.p.y_m != e.q.y_m) waiting_.push_back(e);
+    }
+    std::sort(waiting_.begin(), waiting_.end(),
+              [](const Segment2& a, const Segment2& b) { return low(a) > low(b); });
   }
-  std::sort(xs.begin(), xs.end());
+
+  // The x at which the edges pass height y, ascending; even-odd pairs are inside. y is not below
+  // that of the call before.
+  const std::vector<double>& passes_at(double y) {
+    while (!waiting_.empty() && low(waiting_.back()) <= y) {
+      passing_.push_back(waiting_.back());
+      waiting_.pop_back();
+    }
+    xs_.clear();
+    for (std::size_t i = 0; i < passing_.size();) {
+      const Segment2& e = passing_[i];
+      if (std::max(e.p.y_m, e.q.y_m) <= y) {
+        passing_[i] = passing_.back();
+        passing_.pop_back();
+        continue;
+      }
+      xs_.push_back(e.p.x_m + (y - e.p.y_m) / (e.q.y_m - e.p.y_m) * (e.q.x_m - e.p.x_m));
+      ++i;
+    }
+    std::sort(xs_.begin(), xs_.end());
+    return xs_;
+  }
+
+ private:
+  static double low(const Segment2& e) noexcept { return std::min(e.p.y_m, e.q.y_m); }
+
+  std::vector<Segment2> waiting_, passing_;
+  std::vector<double> xs_;
+};
+
+// Those that come into the box, give or take the tolerance.
+std::vector<Segment2> edges_in(const std::vector<Segment2>& edges, const Box2& box) {
+  std::vector<Segment2> inside;
+  for (const Segment2& e : edges) {
+    if (boxes_meet(box_of(e), box, kBorderTolerance_m)) inside.push_back(e);
+  }
+  return inside;
 }
 
 double common_width(const std::vector<double>& a, const std::vector<double>& b) {
@@ -46,6 +82,9 @@ double common_width(const std::vector<double>& a, const std::vector<double>& b) 
   }
   return width;
 }
+
+constexpr std::size_t kMostHeights =
+    1'000'000;  // of the strips between two outlines, before sorting
 
 }  // namespace
 
@@ -66,13 +105,13 @@ std::optional<Point2> meeting_point(const Segment2& a, const Segment2& b) noexce
   return std::nullopt;
 }
 
-std::vector<SelfCrossing> self_crossings(const Ring& ring) {
+std::vector<SelfCrossing> self_crossings(const Ring& ring, std::size_t most) {
   std::vector<SelfCrossing> found;
   const std::size_t n = ring.size();
   const auto edge = [&](std::size_t i) { return Segment2{ring[i], ring[(i + 1) % n]}; };
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < n && found.size() < most; ++i) {
     const Segment2 a = edge(i);
-    for (std::size_t j = i + 1; j < n; ++j) {
+    for (std::size_t j = i + 1; j < n && found.size() < most; ++j) {
       const Segment2 b = edge(j);
       const bool next = j == i + 1;
       const bool before = i == 0 && j == n - 1;
@@ -93,7 +132,7 @@ std::vector<SelfCrossing> self_crossings(const Ring& ring) {
   return found;
 }
 
-double common_area_m2(const Polygon& a, const Polygon& b) {
+std::optional<double> common_area_m2(const Polygon& a, const Polygon& b, MeasuringSteps& steps) {
   const Box2 box_a = bounds(a.outer), box_b = bounds(b.outer);
   if (!boxes_meet(box_a, box_b, 0)) return 0;
   const double low = std::max(box_a.min.y_m, box_b.min.y_m);
@@ -106,21 +145,28 @@ double common_area_m2(const Polygon& a, const Polygon& b) {
   };
   for (const Segment2& e : edges_a) add(e.p.y_m);
   for (const Segment2& e : edges_b) add(e.p.y_m);
-  for (const Segment2& e : edges_a) {
-    for (const Segment2& f : edges_b) {
-      if (const auto at = meeting_point(e, f)) add(at->y_m);
+  const std::vector<Segment2> near_a = edges_in(edges_a, box_b), near_b = edges_in(edges_b, box_a);
+  Stretches rows = rows_of(near_b);
+  for (const Segment2& e : near_a) {
+    const Box2 box = box_of(e);
+    std::uint64_t compared = 1;
+    for (const std::uint32_t i : rows.touching(box.min.y_m - kBorderTolerance_m,
+                                               box.max.y_m + kBorderTolerance_m, compared)) {
+      if (const auto at = meeting_point(e, near_b[i])) add(at->y_m);
     }
+    if (!steps.take(compared) || ys.size() > kMostHeights) return std::nullopt;
   }
   std::sort(ys.begin(), ys.end());
   ys.erase(std::unique(ys.begin(), ys.end()), ys.end());
 
   double area = 0;
-  std::vector<double> xs_a, xs_b;
+  PassingEdges passing_a(edges_a), passing_b(edges_b);
   for (std::size_t i = 0; i + 1 < ys.size(); ++i) {
     const double middle = ys[i] + (ys[i + 1] - ys[i]) / 2;
-    passes_at(edges_a, middle, xs_a);
-    passes_at(edges_b, middle, xs_b);
+    const std::vector<double>& xs_a = passing_a.passes_at(middle);
+    const std::vector<double>& xs_b = passing_b.passes_at(middle);
     area += common_width(xs_a, xs_b) * (ys[i + 1] - ys[i]);
+    if (!steps.take(1 + xs_a.size() + xs_b.size())) return std::nullopt;
   }
   return area;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -14,6 +15,23 @@ namespace zonepack::packer {
 // they overlap.
 std::optional<Point2> meeting_point(const Segment2& a, const Segment2& b) noexcept;
 
+inline constexpr std::size_t kMostSelfCrossings = 10'000;
+
+// How much work measuring a drawing may take, so that outlines which cross each other everywhere
+// end in a message. One step compares two edges or passes one edge of a strip, some 10 ns.
+class MeasuringSteps {
+ public:
+  explicit MeasuringSteps(std::uint64_t steps) noexcept : left_(steps) {}
+  // False when the steps are used up, then for ever.
+  bool take(std::uint64_t steps) noexcept {
+    left_ = steps > left_ ? 0 : left_ - steps;
+    return left_ > 0;
+  }
+
+ private:
+  std::uint64_t left_;
+};
+
 // Two edges of one ring that meet without being neighbours, or neighbours that fold back onto each
 // other. Edge i runs from vertex i to the next.
 struct SelfCrossing {
@@ -21,14 +39,14 @@ struct SelfCrossing {
   Point2 at;
 };
 
-// In the order of the edges; empty for a simple ring. O(n^2).
-std::vector<SelfCrossing> self_crossings(const Ring& ring);
+// In the order of the edges, at most `most` of them; empty for a simple ring. O(n^2).
+std::vector<SelfCrossing> self_crossings(const Ring& ring, std::size_t most = kMostSelfCrossings);
 
 // The common area of two polygons, which may be non-convex and have holes. The plane is cut into
 // horizontal strips at every vertex and at every crossing of the two outlines: between them no
 // edges cross, so the common width is linear in y and the width at half height times the height is
-// exact up to rounding. Each polygon must not cross itself.
-double common_area_m2(const Polygon& a, const Polygon& b);
+// exact up to rounding. Each polygon must not cross itself. nullopt when the steps do not suffice.
+std::optional<double> common_area_m2(const Polygon& a, const Polygon& b, MeasuringSteps& steps);
 
 // Interior on the left of every edge: outer counter-clockwise, holes clockwise.
 Polygon with_interior_on_the_left(Polygon polygon);

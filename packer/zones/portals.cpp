@@ -6,7 +6,9 @@
 #include <optional>
 #include <set>
 #include <utility>
+#include <vector>
 
+#include "packer/zones/edge_rows.hpp"
 #include "packer/zones/plane.hpp"
 #include "packer/zones/shared_border.hpp"
 #include "packer/zones/zone_file.hpp"
@@ -14,6 +16,8 @@
 
 namespace zonepack::packer {
 namespace {
+
+constexpr std::size_t kMostPortalsCounted = 4096;  // of one zone, far over what is allowed
 
 class PortalPlacer {
  public:
@@ -82,8 +86,18 @@ class PortalPlacer {
 
   std::optional<Segment2> on_border(std::uint32_t a, std::uint32_t b) {
     const std::string pair = "'" + plan_.zones[a].name + "' and '" + plan_.zones[b].name + "'";
-    const std::vector<Segment2> border = shared_borders(
-        plan_.zones[a].polygon, plan_.zones[b].polygon, 2 * snap_m_ + kBorderTolerance_m, 0);
+    const auto [known, fresh] = borders_.try_emplace({a, b});
+    if (fresh) {
+      known->second = shared_borders(plan_.zones[a].polygon, plan_.zones[b].polygon,
+                                     2 * snap_m_ + kBorderTolerance_m, 0);
+    }
+    if (!known->second) {
+      fault("joins " + pair + ", which share a border of more than " +
+            std::to_string(kMostBorderPieces) +
+            " pieces; simplify their outlines (QGIS: Vector > Geometry Tools > Simplify)");
+      return std::nullopt;
+    }
+    const std::vector<Segment2>& border = *known->second;
     if (border.empty()) {
       fault("joins " + pair + ", which share no border: their outlines stay more than " +
             number_text(2 * snap_m_) +
@@ -117,6 +131,8 @@ class PortalPlacer {
   std::set<std::string> drawn_names_;
   std::map<std::string, std::size_t> first_named_;  // the first feature with each portal name
   std::set<std::string> taken_;                     // portal names
+  // Of each pair of zones that a portal named so far.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::optional<std::vector<Segment2>>> borders_;
   const DrawnPortal* drawn_ = nullptr;
 };
 
@@ -127,16 +143,40 @@ void place_portals(const Drawing& drawing, double snap_m, ZonePlan& plan, Findin
   for (const DrawnPortal& portal : drawing.portals) placer.place(portal);
 }
 
-void find_portals(double snap_m, ZonePlan& plan) {
+void find_portals(double snap_m, ZonePlan& plan, Findings& findings) {
+  // Only zones whose boxes come near each other can share a border.
+  std::vector<Box2> boxes;
+  Stretches columns;
+  for (const PlannedZone& zone : plan.zones) {
+    boxes.push_back(bounds(zone.polygon.outer));
+    columns.add(boxes.back().min.x_m, boxes.back().max.x_m);
+  }
+  columns.sort();
   std::set<std::string> taken;
+  std::vector<std::size_t> portals(plan.zones.size());
+  std::uint64_t compared = 0;
   for (std::uint32_t a = 0; a < plan.zones.size(); ++a) {
-    for (std::uint32_t b = a + 1; b < plan.zones.size(); ++b) {
+    for (const std::uint32_t b :
+         columns.touching(boxes[a].min.x_m - snap_m, boxes[a].max.x_m + snap_m, compared)) {
+      if (b <= a || !boxes_meet(boxes[a], boxes[b], snap_m)) continue;
       const PlannedZone &zone_a = plan.zones[a], &zone_b = plan.zones[b];
       if (!share_a_height(zone_a, zone_b)) continue;
-      for (const Segment2& piece :
-           shared_borders(zone_a.polygon, zone_b.polygon, snap_m, kMinFoundPortal_m)) {
+      // Faulty already, so no further portals are of use.
+      if (std::max(portals[a], portals[b]) > kMostPortalsCounted) continue;
+      const auto pieces = shared_borders(zone_a.polygon, zone_b.polygon, snap_m, kMinFoundPortal_m);
+      if (!pieces) {
+        findings.faults.push_back(
+            {std::nullopt, 0, zone_a.name,
+             "zones '" + zone_a.name + "' and '" + zone_b.name + "' share a border of more than " +
+                 std::to_string(kMostBorderPieces) +
+                 " pieces; simplify their outlines (QGIS: Vector > Geometry Tools > Simplify)"});
+        continue;
+      }
+      for (const Segment2& piece : *pieces) {
         plan.portals.push_back({fresh_portal_name(zone_a.name, zone_b.name, taken), a, b, piece});
       }
+      portals[a] += pieces->size();
+      portals[b] += pieces->size();
     }
   }
   plan.portals_found = true;

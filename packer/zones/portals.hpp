@@ -14,6 +14,6 @@ namespace zonepack::packer {
 void place_portals(const Drawing& drawing, double snap_m, ZonePlan& plan, Findings& findings);
 
 // Appends a portal at every border of at least kMinFoundPortal_m that two zones share.
-void find_portals(double snap_m, ZonePlan& plan);
+void find_portals(double snap_m, ZonePlan& plan, Findings& findings);
 
 }  // namespace zonepack::packer

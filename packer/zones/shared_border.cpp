@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "packer/zones/edge_rows.hpp"
 #include "packer/zones/plane.hpp"
 
 namespace zonepack::packer {
@@ -61,6 +62,7 @@ std::optional<Segment2> shared_piece(const Segment2& a, const Segment2& b, doubl
 // Joins two segments that continue or overlap each other in one line; the result has the direction
 // of a.
 std::optional<Segment2> joined(const Segment2& a, const Segment2& b) {
+  if (!boxes_meet(box_of(a), box_of(b), 2 * kCollinear_m)) return std::nullopt;
   const std::array<Point2, 4> ends{a.p, a.q, b.p, b.q};
   Segment2 whole = a;
   for (const Point2 p : ends) {
@@ -94,15 +96,29 @@ void join_collinear(std::vector<Segment2>& pieces) {
 
 }  // namespace
 
-std::vector<Segment2> shared_borders(const Polygon& a, const Polygon& b, double separation_m,
-                                     double min_length_m) {
+std::optional<std::vector<Segment2>> shared_borders(const Polygon& a, const Polygon& b,
+                                                    double separation_m, double min_length_m) {
   std::vector<Segment2> pieces;
   if (!boxes_meet(bounds(a.outer), bounds(b.outer), separation_m)) return pieces;
+  // A piece lies on one edge and at most this far from the other, up to rounding.
+  const double reach_m = separation_m + kCollinear_m;
+  const Box2 box_b = bounds(b.outer);
+  std::vector<Segment2> edges_b;
+  for_each_edge(b, [&](const Segment2& edge) { edges_b.push_back(edge); });
+  Stretches rows = rows_of(edges_b);
   for_each_edge(a, [&](const Segment2& edge_a) {
-    for_each_edge(b, [&](const Segment2& edge_b) {
-      if (const auto piece = shared_piece(edge_a, edge_b, separation_m)) pieces.push_back(*piece);
-    });
+    const Box2 box = box_of(edge_a);
+    if (!boxes_meet(box, box_b, reach_m) || pieces.size() > kMostBorderPieces) return;
+    std::uint64_t compared = 0;
+    for (const std::uint32_t i :
+         rows.touching(box.min.y_m - reach_m, box.max.y_m + reach_m, compared)) {
+      if (!boxes_meet(box, box_of(edges_b[i]), reach_m)) continue;
+      if (const auto piece = shared_piece(edge_a, edges_b[i], separation_m)) {
+        pieces.push_back(*piece);
+      }
+    }
   });
+  if (pieces.size() > kMostBorderPieces) return std::nullopt;
   join_collinear(pieces);
   std::erase_if(pieces, [&](const Segment2& piece) { return length(piece) < min_length_m; });
   return pieces;

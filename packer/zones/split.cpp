@@ -176,8 +176,14 @@ class PlanSplitter {
     const std::uint32_t end = range.first + range.count;
     for (std::uint32_t a = range.first; a < end; ++a) {
       for (std::uint32_t b = a + 1; b < end; ++b) {
-        for (const Segment2& seam :
-             shared_borders(zones()[a].polygon, zones()[b].polygon, kSeam_m, kSeam_m)) {
+        const auto seams = shared_borders(zones()[a].polygon, zones()[b].polygon, kSeam_m, kSeam_m);
+        if (!seams) {
+          throw std::runtime_error(
+              "zones '" + zones()[a].name + "' and '" + zones()[b].name +
+              "' share a border of more than " + std::to_string(kMostBorderPieces) +
+              " pieces; simplify the outline of zone '" + zones()[a].parent + "'");
+        }
+        for (const Segment2& seam : *seams) {
           std::string name = fresh_portal_name(zones()[a].name, zones()[b].name, portal_names_);
           result_.plan.portals.push_back({std::move(name), a, b, seam});
           range.seams.push_back(seam);

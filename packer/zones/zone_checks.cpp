@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "packer/zones/edge_rows.hpp"
 #include "packer/zones/plane.hpp"
 #include "packer/zones/zone_file.hpp"
 #include "runtime/pack_format/limits.hpp"
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double kMaxDegreesExtent = 0.1;  // no building measures 10 cm
 constexpr double kFlat_m = 1e-6;
+constexpr std::size_t kMostOutlineFaults = 100;  // of one outline
 
 std::string edge_text(const Ring& ring, std::size_t i) {
   return "edge " + std::to_string(i) + " " + point_text(ring[i]) + "-" +
@@ -49,7 +51,8 @@ bool check_ring(const Ring& ring, const std::string& what, std::vector<std::stri
     std::string message = "crosses itself: in its " + what + ", " + edge_text(ring, c.edge_a) +
                           " meets " + edge_text(ring, c.edge_b) + " at " + point_text(c.at);
     if (crossings.size() > 1) {
-      message += ", and " + std::to_string(crossings.size() - 1) + " more such place" +
+      message += ", and " + std::string(crossings.size() == kMostSelfCrossings ? "over " : "") +
+                 std::to_string(crossings.size() - 1) + " more such place" +
                  (crossings.size() > 2 ? "s" : "");
     }
     faults.push_back(message + "; put its vertices in order or delete the wrong one");
@@ -77,11 +80,22 @@ void check_names(const Drawing& drawing, Findings& findings) {
   }
 }
 
-void check_overlap(const DrawnZone& a, const DrawnZone& b, Findings& findings) {
-  const double common = common_area_m2(a.zone.polygon, b.zone.polygon);
+// False when the steps are used up.
+bool check_overlap(const DrawnZone& a, const DrawnZone& b, MeasuringSteps& steps,
+                   Findings& findings) {
+  const std::optional<double> measured = common_area_m2(a.zone.polygon, b.zone.polygon, steps);
+  if (!measured) {
+    findings.faults.push_back(
+        {b.feature, b.line, b.zone.name,
+         "zones '" + a.zone.name + "' and '" + b.zone.name +
+             "' cross in too many places to measure how far they overlap; no zones after them are "
+             "compared: simplify their outlines (QGIS: Vector > Geometry Tools > Simplify)"});
+    return false;
+  }
+  const double common = *measured;
   const double area_a = area_m2(a.zone.polygon), area_b = area_m2(b.zone.polygon);
   const double smaller = std::min(area_a, area_b);
-  if (common <= kMaxOverlap * smaller) return;
+  if (common <= kMaxOverlap * smaller) return true;
   const std::string& small_name = area_b <= area_a ? b.zone.name : a.zone.name;
   findings.faults.push_back(
       {b.feature, b.line, b.zone.name,
@@ -89,6 +103,42 @@ void check_overlap(const DrawnZone& a, const DrawnZone& b, Findings& findings) {
            " m2, " + number_text(100 * common / smaller) + " % of '" + small_name +
            "'; at most 1 % is allowed: move the border that they share, or give zones on different "
            "floors z_min and z_max"});
+  return true;
+}
+
+// Enough for any drawing of a building, and for some seconds of one that is none.
+MeasuringSteps steps_for(std::uint64_t vertices) {
+  constexpr std::uint64_t kFreeSteps = 200'000'000, kStepsPerVertex = 128;
+  return MeasuringSteps(kFreeSteps + kStepsPerVertex * vertices);
+}
+
+std::uint64_t vertices_of(const Polygon& polygon) {
+  std::uint64_t vertices = polygon.outer.size();
+  for (const Ring& hole : polygon.holes) vertices += hole.size();
+  return vertices;
+}
+
+void check_overlaps(const std::vector<DrawnZone>& zones, Findings& findings) {
+  std::vector<Box2> boxes(zones.size());
+  Stretches columns;
+  std::uint64_t vertices = 0;
+  for (std::size_t i = 0; i < zones.size(); ++i) {
+    if (zones[i].sound) boxes[i] = bounds(zones[i].zone.polygon.outer);
+    columns.add(boxes[i].min.x_m, boxes[i].max.x_m);
+    vertices += vertices_of(zones[i].zone.polygon);
+  }
+  columns.sort();
+  MeasuringSteps steps = steps_for(vertices);
+  for (std::uint32_t i = 0; i < zones.size(); ++i) {
+    if (!zones[i].sound) continue;
+    std::uint64_t compared = 0;
+    for (const std::uint32_t j : columns.touching(boxes[i].min.x_m, boxes[i].max.x_m, compared)) {
+      if (j <= i || !zones[j].sound || !boxes_meet(boxes[i], boxes[j], 0)) continue;
+      if (!share_a_height(zones[i].zone, zones[j].zone)) continue;
+      if (!check_overlap(zones[i], zones[j], steps, findings)) return;
+    }
+    steps.take(compared);
+  }
 }
 
 void check_extent(const Drawing& drawing, Findings& findings) {
@@ -116,8 +166,7 @@ void check_extent(const Drawing& drawing, Findings& findings) {
 
 std::vector<std::string> outline_faults(const Polygon& polygon) {
   std::vector<std::string> faults;
-  std::size_t vertices = polygon.outer.size();
-  for (const Ring& hole : polygon.holes) vertices += hole.size();
+  const std::uint64_t vertices = vertices_of(polygon);
   if (vertices > kMaxVerticesPerZone) {
     faults.push_back("has " + std::to_string(vertices) + " vertices; at most " +
                      std::to_string(kMaxVerticesPerZone) +
@@ -127,17 +176,25 @@ std::vector<std::string> outline_faults(const Polygon& polygon) {
   if (!check_ring(polygon.outer, "outline", faults)) return faults;
   const Polygon outer{polygon.outer, {}};
   std::vector<std::pair<std::size_t, Polygon>> sound;
+  MeasuringSteps steps = steps_for(vertices);
   for (std::size_t i = 0; i < polygon.holes.size(); ++i) {
     const std::string what = "hole " + std::to_string(i + 1);
     if (!check_ring(polygon.holes[i], what, faults)) continue;
     const Polygon hole{polygon.holes[i], {}};
-    if (area_m2(hole) - common_area_m2(hole, outer) > kMinZoneArea_m2) {
+    const std::optional<double> inside = common_area_m2(hole, outer, steps);
+    if (!inside || faults.size() > kMostOutlineFaults) {
+      faults.push_back("has holes that cross its outline or each other in too many places, " +
+                       what +
+                       " among them; simplify it (QGIS: Vector > Geometry Tools > Simplify)");
+      return faults;
+    }
+    if (area_m2(hole) - *inside > kMinZoneArea_m2) {
       faults.push_back("has a hole outside its outline: " + what + " near " +
                        point_text(hole.outer[0]) + "; move the hole inside or delete it");
       continue;
     }
     for (const auto& [other, placed] : sound) {
-      if (common_area_m2(hole, placed) > kMinZoneArea_m2) {
+      if (common_area_m2(hole, placed, steps).value_or(0) > kMinZoneArea_m2) {
         faults.push_back("has holes that overlap: hole " + std::to_string(other + 1) + " and " +
                          what + " near " + point_text(hole.outer[0]) + "; merge them");
       }
@@ -152,13 +209,7 @@ std::vector<std::string> outline_faults(const Polygon& polygon) {
 
 void check_zones_together(const Drawing& drawing, Findings& findings) {
   check_names(drawing, findings);
-  for (std::size_t i = 0; i < drawing.zones.size(); ++i) {
-    const DrawnZone& a = drawing.zones[i];
-    for (std::size_t j = i + 1; a.sound && j < drawing.zones.size(); ++j) {
-      const DrawnZone& b = drawing.zones[j];
-      if (b.sound && share_a_height(a.zone, b.zone)) check_overlap(a, b, findings);
-    }
-  }
+  check_overlaps(drawing.zones, findings);
   check_extent(drawing, findings);
 }
 

@@ -2,12 +2,15 @@
 #include "packer/zones/zone_file.hpp"
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "packer/zones/drawn.hpp"
 #include "packer/zones/geojson.hpp"
@@ -23,6 +26,14 @@ namespace {
 
 std::string read_text(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
+  std::error_code no_size;
+  const std::uintmax_t size = std::filesystem::file_size(path, no_size);
+  if (!no_size && size > kMaxZoneFileBytes) {
+    throw std::runtime_error(path + ": is " + std::to_string(size) +
+                             " bytes long, a zone file has at most " +
+                             std::to_string(kMaxZoneFileBytes) +
+                             "; simplify the outlines (QGIS: Vector > Geometry Tools > Simplify)");
+  }
   std::ostringstream text;
   if (file) text << file.rdbuf();
   if (!file || !text) {
@@ -93,7 +104,7 @@ ZoneFile parse_zone_file(std::string_view text, double snap_m) {
   if (drawing.portal_features > 0) {
     place_portals(drawing, snap_m, plan, findings);
   } else {
-    find_portals(snap_m, plan);
+    find_portals(snap_m, plan, findings);
   }
   sort_by_name(plan);
   check_portal_counts(plan, findings);

@@ -53,7 +53,7 @@ inline const std::string kLeft = box("A", 0, 0, 4, 3);
 inline const std::string kRight = box("B", 4, 0, 8, 3);
 inline const std::string kDoor = portal("P1", "A", "B", "[[4,1],[4,2]]");
 
-inline std::vector<std::string> messages(const std::vector<Finding>& findings) {
+inline std::vector<std::string> messages(const FindingList& findings) {
   std::vector<std::string> texts;
   for (const Finding& finding : findings) texts.push_back(finding.message);
   return texts;
