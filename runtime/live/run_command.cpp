@@ -147,7 +147,11 @@ Outcome<void> run_and_report(const RunArguments& arguments) {
   if (arguments.source.kind == CanSourceChoice::Kind::kLog &&
       (!inputs->corrections.empty() || inputs->truth)) {
     const LogTime time = LogTime::read(arguments.source.name, inputs->settings.can.interface);
-    inputs->corrections = time.on_first_clock(std::move(inputs->corrections));
+    if (time.steps() && !arguments.corrections.empty()) {
+      auto corrections = read_corrections_as_written(arguments.corrections);
+      if (!corrections) return corrections.error();
+      inputs->corrections = time.on_first_clock(std::move(*corrections));
+    }
     if (inputs->truth) inputs->truth = time.on_first_clock(*inputs->truth);
   }
   EndGuard guard({socket_path(inputs->settings.serve), inputs->settings.serve.looking_socket});

@@ -133,7 +133,11 @@ Outcome<void> replay_log(const ReplayArguments& arguments) {
   }
   if (!inputs->corrections.empty() || inputs->truth) {
     const LogTime time = LogTime::read(arguments.can, inputs->settings.can.interface);
-    inputs->corrections = time.on_first_clock(std::move(inputs->corrections));
+    if (time.steps() && !arguments.corrections.empty()) {
+      auto corrections = read_corrections_as_written(arguments.corrections);
+      if (!corrections) return corrections.error();
+      inputs->corrections = time.on_first_clock(std::move(*corrections));
+    }
     if (inputs->truth) inputs->truth = time.on_first_clock(*inputs->truth);
   }
   LogMatch frames(log);

@@ -23,11 +23,13 @@ class LogTime {
   bool steps() const noexcept { return stretches_.size() > 1; }
 
   // A stamp of the log's own clock, on the clock of the first frame: by the stretch whose stamps it
-  // is among or next to; by the later one where two have it.
+  // is among or next to; by the first of those where several have it.
   std::int64_t on_first_clock(std::int64_t stamp_ns) const noexcept;
 
-  // The same for files that go with the log; kept as they are when the clock was never set.
-  std::vector<PoseCorrection> on_first_clock(std::vector<PoseCorrection> corrections) const;
+  // The same for files that go with the log. Corrections are in the order in which they were
+  // written, which decides where a clock that was set back gave the same stamps twice; they are
+  // returned in order of reception.
+  std::vector<PoseCorrection> on_first_clock(std::vector<PoseCorrection> as_written) const;
   TruthTrack on_first_clock(const TruthTrack& truth) const;
 
  private:
@@ -35,6 +37,9 @@ class LogTime {
     std::int64_t first_ns = 0, last_ns = 0;  // least and largest stamp, as the log has them
     std::int64_t added_ns = 0;
   };
+  // Index of the stretch that is nearest, from `first` on; the least of several.
+  std::size_t stretch_of(std::int64_t stamp_ns, std::size_t first) const noexcept;
+
   std::vector<Stretch> stretches_;
 };
 

@@ -139,7 +139,7 @@ Failure not_a_stamp(std::string_view word) {
 
 }  // namespace
 
-Outcome<std::vector<PoseCorrection>> read_corrections(const std::string& path) {
+Outcome<std::vector<PoseCorrection>> read_corrections_as_written(const std::string& path) {
   std::vector<PoseCorrection> corrections;
   const auto take = [&](std::span<const std::string_view> words) -> Outcome<void> {
     if (words.size() != 8) return wrong_columns(words);
@@ -156,11 +156,18 @@ Outcome<std::vector<PoseCorrection>> read_corrections(const std::string& path) {
     return {};
   };
   if (const auto read = for_each_record(path, kCorrectionColumns, take); !read) return read.error();
+  return corrections;
+}
+
+Outcome<std::vector<PoseCorrection>> read_corrections(const std::string& path) {
+  auto read = read_corrections_as_written(path);
+  if (!read) return read;
+  std::vector<PoseCorrection>& corrections = *read;
   std::stable_sort(corrections.begin(), corrections.end(),
                    [](const PoseCorrection& a, const PoseCorrection& b) {
                      return a.received_ns < b.received_ns;
                    });
-  return corrections;
+  return read;
 }
 
 TruthTrack::TruthTrack(std::vector<Sample> samples) : samples_(std::move(samples)) {

@@ -21,6 +21,8 @@ namespace zonepack {
 // In order of reception (lines of equal `received` keep their order). Poses and sigmas may be
 // anything a number can be, nan too: judging them is the filter's part.
 Outcome<std::vector<PoseCorrection>> read_corrections(const std::string& path);
+// The same in the order of the file.
+Outcome<std::vector<PoseCorrection>> read_corrections_as_written(const std::string& path);
 
 // Where the robot really was.
 class TruthTrack {

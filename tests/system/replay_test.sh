@@ -92,4 +92,31 @@ says "first zone resident *never"
 can=broken.log exits 0 replay map --json broken.json
 says "broken.log:1:"
 holds broken.json '.can_rejected == 1 and .can_frames == 2000'
+# The robot's clock is set a minute into the drive, by seconds or by decades, forward or back, and the fixes are stamped
+# by it: replay, log playback and calibration go on across it and come to what they come to without.
+started=$(sed -n '1s/^(\([0-9.]*\)).*/\1/p' "$run/can0.log")
+set_by() {  # SECONDS: set.log, set.txt
+  awk -F'[()]' -v from="$started" -v by="$1" '{ t = $2 + 0; if (t - from >= 60) t += by; printf "(%.6f)%s\n", t, $3 }' \
+    "$run/can0.log" >set.log
+  awk -v from="$started" -v by="$1" '/^#/ { print; next }
+    { for (i = 1; i <= 2; ++i) { t = $i + 0; if (t - from >= 60) t += by; $i = sprintf("%.6f", t) } print }' \
+    "$run/corrections.txt" >set.txt
+}
+decisions() { grep -o '"event":"[a-z_]*","zone":"[^"]*"' "$1"; }
+set_by 0
+exits 0 "$bin/zoned" replay --config "$config" --map map --can set.log --corrections set.txt --events plain.jsonl
+decisions plain.jsonl >plain.txt
+for by in 1700000000 -1700000000 30 -20; do
+  set_by "$by"
+  exits 0 timeout 60 "$bin/zoned" replay --config "$config" --map map --can set.log --corrections set.txt --events set.jsonl
+  says "set.log:[0-9]*: the clock of the log was set from 1718021660.[0-9]* s to "
+  (($(grep -c 'the clock of the log was set' out.txt) == 1)) || fail "not said once: $(cat out.txt)"
+  decisions set.jsonl | cmp - plain.txt || fail "a clock set by $by s changes what is decided"
+  exits 0 timeout 60 "$bin/zoned" run --config "$config" --map map --can log:set.log@100000 --corrections set.txt \
+    --allow-degraded --record-can captured.log
+  says "the clock of the log was set"
+  (($(wc -l <captured.log) == $(wc -l <set.log))) || fail "the recording lost frames"
+done
+exits 0 "$bin/zoned" calibrate --config "$config" --can set.log --truth "$run/base_groundtruth.txt"
+says "the clock of the log was set"
 echo "scenario 1 keeps its promises"

@@ -13,8 +13,10 @@ int main(int argc, char** argv) {
   if (argc != 2) return 2;
   testing_support::FakeRun run;
   run.settings.socket = argv[1];
-  run.ports.dump = [](int fd) -> Result<std::uint64_t> {
-    return static_cast<std::uint64_t>(::write(fd, "frames", 6));
+  run.ports.dump = [](BoundedWriter& to) -> Result<std::uint64_t> {
+    const auto written = to.write(std::as_bytes(std::span("frames", 6)));
+    if (!written) return written.error();
+    return std::uint64_t{6};
   };
   LiveStatus status;
   status.state.zone = 0;

@@ -55,6 +55,24 @@ TEST_F(LogTimeOf, FollowsAClockThatIsSetBack) {
   EXPECT_EQ(time.on_first_clock(15 * kSecond_ns), 1'718'021'615 * kSecond_ns);
 }
 
+// 100 to 129 s, then set back to 110: the order of the file says which 115 is meant.
+TEST_F(LogTimeOf, TellsStampsApartThatAClockGaveTwice) {
+  const LogTime time = read({100, 110}, 30);
+  std::vector<PoseCorrection> corrections(4);
+  const std::int64_t received_s[] = {115, 128, 111, 115};
+  for (std::size_t i = 0; i < 4; ++i) {
+    corrections[i].received_ns = received_s[i] * kSecond_ns;
+    corrections[i].stamp_ns = corrections[i].received_ns - kSecond_ns / 2;
+  }
+  const auto placed = time.on_first_clock(corrections);
+  // The frame stamped 110 comes at 130: what follows it is 20 s later than written.
+  const std::int64_t expected_s[] = {115, 128, 131, 135};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(placed[i].received_ns, expected_s[i] * kSecond_ns) << i;
+    EXPECT_EQ(placed[i].stamp_ns, expected_s[i] * kSecond_ns - kSecond_ns / 2) << i;
+  }
+}
+
 TEST_F(LogTimeOf, ChangesNothingWithoutAStep) {
   const LogTime time = read({10}, 10);
   EXPECT_FALSE(time.steps());
