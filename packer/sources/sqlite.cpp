@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "packer/sources/sqlite.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -96,13 +94,9 @@ std::string immutable_uri(const fs::path& absolute_path) {
 
 FileState file_state(const fs::path& path) {
   FileState state;
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return state;
-  state.device = status.st_dev;
-  state.inode = status.st_ino;
-  state.size = static_cast<std::uint64_t>(status.st_size);
-  state.mtime_s = status.st_mtim.tv_sec;
-  state.mtime_ns = status.st_mtim.tv_nsec;
+  std::error_code error;
+  state.size = fs::file_size(path, error);
+  state.written = fs::last_write_time(path, error);
   const std::string header = first_bytes(path, 28);
   if (header.size() == 28) state.change_counter = header.substr(24);
   return state;
