@@ -176,14 +176,23 @@ void SqliteQuery::fail() const {
     throw SqliteError(file_->name() + ": " + reason);
   }
   file_->require_unchanged();
-  // Debian's sqlite3 has no .recover; .dump ends what it could read of a damaged file with
-  // ROLLBACK.
-  throw SqliteCorrupt(file_->name(),
-                      "expected whole database pages, found damaged ones (" + reason +
-                          "); copy the file again, or save what is readable with: sqlite3 " +
-                          shell_quoted(file_->name()) +
-                          " .dump | sed 's/^ROLLBACK;.*/COMMIT;/' | sqlite3 NEW.db (RTAB-Map's "
-                          "own tool is rtabmap-recovery)");
+  const std::string problem =
+      "expected whole database pages, found damaged ones (" + reason + "); copy the file again, ";
+  // Debian's sqlite3 has no .recover, and its .dump needs the list of tables.
+  const bool tables_readable =
+      sqlite3_exec(file_->handle(), "SELECT sum(length(sql)) FROM sqlite_schema", nullptr, nullptr,
+                   nullptr) == SQLITE_OK;
+  if (!tables_readable) {
+    throw SqliteCorrupt(file_->name(),
+                        problem +
+                            "or try RTAB-Map's own tool, rtabmap-recovery: the list of "
+                            "tables is damaged too, which sqlite3 cannot get past");
+  }
+  // What .dump could read of a damaged file ends with ROLLBACK.
+  throw SqliteCorrupt(file_->name(), problem + "or save what is readable with: sqlite3 " +
+                                         shell_quoted(file_->name()) +
+                                         " .dump | sed 's/^ROLLBACK;.*/COMMIT;/' | sqlite3 NEW.db "
+                                         "(RTAB-Map's own tool is rtabmap-recovery)");
 }
 
 }  // namespace zonepack::packer
