@@ -109,9 +109,18 @@ void MapBuilder::outline() {
 }
 
 void MapBuilder::place() {
+  std::set<std::int32_t> placed_sessions;
+  for (const NodeOutline& node : database_.outline().nodes) {
+    if (node.pose) placed_sessions.insert(node.map_id);
+  }
+  const bool all = options_.unlinked == UnlinkedPolicy::kOdometryAll || placed_sessions.empty();
   for (const NodeOutline& node : database_.outline().nodes) {
     if (node.damaged) continue;
-    const bool odometry = options_.unlinked == UnlinkedPolicy::kOdometry;
+    const bool connected = all || placed_sessions.contains(node.map_id);
+    const bool by_odometry = options_.unlinked == UnlinkedPolicy::kOdometry ||
+                             options_.unlinked == UnlinkedPolicy::kOdometryAll;
+    if (by_odometry && !connected) ++summary_.unconnected_by_session[node.map_id];
+    const bool odometry = by_odometry && connected;
     const std::optional<Transform>& base = node.pose  ? node.pose
                                            : odometry ? node.odometry_pose
                                                       : node.pose;
@@ -122,6 +131,13 @@ void MapBuilder::place() {
     const Transform& T = *base;
     places_.push_back({node.id, {T[3], T[7]}, T[11]});
     nodes_.push_back(node_at(node.id, T));
+  }
+  for (const auto& [session, count] : summary_.unconnected_by_session) {
+    summary_.warnings.push_back(
+        options_.database.string() + ": session " + std::to_string(session) + " with its " +
+        std::to_string(count) + (count == 1 ? " signature" : " signatures") +
+        " is connected to no other, so nothing says where it is; it is left out. Keep it with "
+        "--unlinked odometry-all");
   }
   Partition partition = packer::partition(zones_.plan.zones, places_, options_.orphans);
   summary_.orphans = partition.orphans;
@@ -309,7 +325,7 @@ void MapBuilder::finish(MapFolder& folder) {
   content.source_kind = "rtabmap";
   content.source_version = summary_.schema_version;
   static constexpr const char* kOrphans[] = {"nearest", "drop", "error"};
-  static constexpr const char* kUnlinked[] = {"odometry", "drop", "error"};
+  static constexpr const char* kUnlinked[] = {"odometry", "drop", "error", "odometry-all"};
   content.options = std::string("orphans=") + kOrphans[static_cast<std::size_t>(options_.orphans)] +
                     " unlinked=" + kUnlinked[static_cast<std::size_t>(options_.unlinked)] +
                     " max_zone_bytes=" + std::to_string(options_.max_zone_bytes) +

@@ -18,7 +18,9 @@
 // Builds a map, a folder with one pack per zone and a manifest, from a database and a zone file.
 namespace zonepack::packer {
 
-enum class UnlinkedPolicy : std::uint8_t { kOdometry, kDrop, kError };
+// kOdometry leaves out sessions of which nothing has an optimised pose while others have: their
+// odometry starts at a place of its own.
+enum class UnlinkedPolicy : std::uint8_t { kOdometry, kDrop, kError, kOdometryAll };
 enum class DamagedPolicy : std::uint8_t { kSkip, kError };
 
 struct BuildOptions {
@@ -40,6 +42,7 @@ struct BuildSummary {
   std::uint64_t features = 0;
   std::size_t deleted = 0;  // weight -9
   std::map<std::int32_t, std::size_t> unlinked_by_session;
+  std::map<std::int32_t, std::size_t> unconnected_by_session;  // of these, left out with kOdometry
   std::size_t unlinked_dropped = 0;
   std::vector<Orphan> orphans;
   std::size_t orphans_dropped = 0;

@@ -5,6 +5,7 @@
 
 #include <iomanip>
 #include <iostream>
+#include <map>
 #include <memory>
 
 #include "packer/build/map_builder.hpp"
@@ -60,12 +61,18 @@ nlohmann::ordered_json to_json(const BuildSummary& s, const std::filesystem::pat
 
 void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostream& out) {
   for (const std::string& warning : s.warnings) out << "warning: " << warning << "\n";
+  std::map<std::int32_t, std::size_t> unlinked_by_session = s.unlinked_by_session;
+  std::size_t unconnected = 0;
+  for (const auto& [session, count] : s.unconnected_by_session) {
+    unlinked_by_session.erase(session);
+    unconnected += count;
+  }
   std::size_t unlinked = 0;
-  for (const auto& [session, count] : s.unlinked_by_session) unlinked += count;
+  for (const auto& [session, count] : unlinked_by_session) unlinked += count;
   if (unlinked > 0) {
     out << "WARNING: " << unlinked << " signatures have no optimised pose (";
     const char* separator = "";
-    for (const auto& [session, count] : s.unlinked_by_session) {
+    for (const auto& [session, count] : unlinked_by_session) {
       out << separator << "session " << session << ": " << count;
       separator = ", ";
     }
@@ -75,8 +82,8 @@ void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostr
                 : "they were placed by odometry, which may be far off (--unlinked odometry)")
         << "\n";
   }
-  if (options.unlinked == UnlinkedPolicy::kOdometry && s.unlinked_dropped > 0) {
-    out << "WARNING: " << s.unlinked_dropped
+  if (options.unlinked != UnlinkedPolicy::kDrop && s.unlinked_dropped > unconnected) {
+    out << "WARNING: " << s.unlinked_dropped - unconnected
         << " signatures have no pose at all and were left out\n";
   }
   if (!s.orphans.empty()) {
@@ -154,8 +161,10 @@ void add_build_command(CLI::App& app, int& exit_code) {
       *command, "--unlinked", options.unlinked,
       {{"odometry", UnlinkedPolicy::kOdometry},
        {"drop", UnlinkedPolicy::kDrop},
-       {"error", UnlinkedPolicy::kError}},
-      "signatures without an optimised pose: odometry (default), drop or error");
+       {"error", UnlinkedPolicy::kError},
+       {"odometry-all", UnlinkedPolicy::kOdometryAll}},
+      "signatures without an optimised pose: odometry (default; without sessions that are "
+      "connected to no other), odometry-all, drop or error");
   add_choice_option<DamagedPolicy>(
       *command, "--damaged", options.damaged,
       {{"error", DamagedPolicy::kError}, {"skip", DamagedPolicy::kSkip}},

@@ -128,6 +128,31 @@ AdminMatrix admin_matrix(const SqliteFile& file, const SqliteQuery& row, int col
   return result;
 }
 
+// Throws unless the transform is a rotation and a place on a map.
+void require_pose(const Transform& T, const CellPlace& place) {
+  constexpr float kFurthest_m = 1e7F;
+  constexpr float kTolerance = 0.01F;  // of a unit matrix; RTAB-Map stores float32
+  for (const int at : {3, 7, 11}) {
+    if (std::fabs(T[static_cast<std::size_t>(at)]) >= kFurthest_m) {
+      place.damaged("expected a position within 10,000 km, found " +
+                    std::to_string(T[static_cast<std::size_t>(at)]) + " m");
+    }
+  }
+  const auto dot = [&T](std::size_t a, std::size_t b) {
+    return T[4 * a] * T[4 * b] + T[4 * a + 1] * T[4 * b + 1] + T[4 * a + 2] * T[4 * b + 2];
+  };
+  const float determinant = T[0] * (T[5] * T[10] - T[6] * T[9]) -
+                            T[1] * (T[4] * T[10] - T[6] * T[8]) +
+                            T[2] * (T[4] * T[9] - T[5] * T[8]);
+  bool rotation = determinant > 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b <= a; ++b) {
+      rotation = rotation && std::fabs(dot(a, b) - (a == b ? 1.0F : 0.0F)) <= kTolerance;
+    }
+  }
+  if (!rotation) place.damaged("expected a rotation in the first three columns, found none");
+}
+
 void assign_pose(const SqliteFile& file, MapOutline& outline, std::int32_t id,
                  std::span<const std::byte> pose) {
   const CellPlace place{&file.name(), id, "Admin.opt_poses"};
@@ -146,6 +171,7 @@ void assign_pose(const SqliteFile& file, MapOutline& outline, std::int32_t id,
   }
   try {
     node->pose = transform_from(pose, place);
+    if (node->pose) require_pose(*node->pose, place);
   } catch (const DamagedSignature& error) {
     add_damage(outline, *node, error.damage());
   }
@@ -176,6 +202,18 @@ void read_optimised_poses(const SqliteFile& file, const RtabmapSchema& schema,
     std::int32_t id;
     std::memcpy(&id, id_bytes.data() + i * sizeof(id), sizeof(id));
     assign_pose(file, outline, id, pose_span.subspan(i * pose_bytes, pose_bytes));
+  }
+}
+
+// Of nodes that only their odometry places.
+void check_odometry_poses(const SqliteFile& file, MapOutline& outline) {
+  for (NodeOutline& node : outline.nodes) {
+    if (node.damaged || node.pose || !node.odometry_pose) continue;
+    try {
+      require_pose(*node.odometry_pose, {&file.name(), node.id, "Node.pose"});
+    } catch (const DamagedSignature& error) {
+      add_damage(outline, node, error.damage());
+    }
   }
 }
 
@@ -282,6 +320,7 @@ MapOutline read_outline(const SqliteFile& file, const RtabmapSchema& schema) {
   outline.warnings = schema.warnings();
   read_nodes(file, schema, outline);
   read_optimised_poses(file, schema, outline);
+  check_odometry_poses(file, outline);
   count_unlinked(outline);
   read_if_possible(outline, "RTAB-Map's own occupancy grid",
                    [&] { read_optimised_map(file, schema, outline); });

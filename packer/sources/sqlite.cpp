@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "packer/sources/sqlite.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -96,13 +94,9 @@ std::string immutable_uri(const fs::path& absolute_path) {
 
 FileState file_state(const fs::path& path) {
   FileState state;
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return state;
-  state.device = status.st_dev;
-  state.inode = status.st_ino;
-  state.size = static_cast<std::uint64_t>(status.st_size);
-  state.mtime_s = status.st_mtim.tv_sec;
-  state.mtime_ns = status.st_mtim.tv_nsec;
+  std::error_code error;
+  state.size = fs::file_size(path, error);
+  state.written = fs::last_write_time(path, error);
   const std::string header = first_bytes(path, 28);
   if (header.size() == 28) state.change_counter = header.substr(24);
   return state;
@@ -228,14 +222,23 @@ void SqliteQuery::fail() const {
     throw SqliteError(file_->name() + ": " + reason);
   }
   file_->require_unchanged();
-  // Debian's sqlite3 has no .recover; .dump ends what it could read of a damaged file with
-  // ROLLBACK.
-  throw SqliteCorrupt(file_->name(),
-                      "expected whole database pages, found damaged ones (" + reason +
-                          "); copy the file again, or save what is readable with: sqlite3 " +
-                          shell_quoted(file_->name()) +
-                          " .dump | sed 's/^ROLLBACK;.*/COMMIT;/' | sqlite3 NEW.db (RTAB-Map's "
-                          "own tool is rtabmap-recovery)");
+  const std::string problem =
+      "expected whole database pages, found damaged ones (" + reason + "); copy the file again, ";
+  // Debian's sqlite3 has no .recover, and its .dump needs the list of tables.
+  const bool tables_readable =
+      sqlite3_exec(file_->handle(), "SELECT sum(length(sql)) FROM sqlite_schema", nullptr, nullptr,
+                   nullptr) == SQLITE_OK;
+  if (!tables_readable) {
+    throw SqliteCorrupt(file_->name(),
+                        problem +
+                            "or try RTAB-Map's own tool, rtabmap-recovery: the list of "
+                            "tables is damaged too, which sqlite3 cannot get past");
+  }
+  // What .dump could read of a damaged file ends with ROLLBACK.
+  throw SqliteCorrupt(file_->name(), problem + "or save what is readable with: sqlite3 " +
+                                         shell_quoted(file_->name()) +
+                                         " .dump | sed 's/^ROLLBACK;.*/COMMIT;/' | sqlite3 NEW.db "
+                                         "(RTAB-Map's own tool is rtabmap-recovery)");
 }
 
 }  // namespace zonepack::packer

@@ -38,8 +38,8 @@ class SqliteCorrupt : public SqliteError {
 
 // What changes of a database file when a program commits to it.
 struct FileState {
-  std::uint64_t device = 0, inode = 0, size = 0;
-  std::int64_t mtime_s = 0, mtime_ns = 0;
+  std::uintmax_t size = 0;
+  std::filesystem::file_time_type written{};
   std::string change_counter;  // bytes 24 to 27 of the file; SQLite counts commits there
   bool operator==(const FileState&) const = default;
 };

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "platform/can_frame_source.hpp"
 #include "platform/can_log.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"

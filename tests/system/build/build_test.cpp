@@ -152,6 +152,23 @@ TEST(Build, TreatsSignaturesWithoutAnOptimisedPoseAsAsked) {
   EXPECT_THAT(error.output, HasSubstr("--unlinked odometry or drop"));
 }
 
+// The odometry of a session that nothing joins to the map starts at a place of its own.
+TEST(Build, LeavesOutSessionsThatAreConnectedToNoOther) {
+  const Packer packer;
+  test_support::RtabmapFixture fixture = four_signatures();
+  fixture.signatures[3].pose.reset();
+  fixture.signatures[3].map_id = 7;
+  packer.write_database(fixture);
+  const Outcome dropped = packer.build();
+  EXPECT_EQ(dropped.exit_code, 0) << dropped.output;
+  EXPECT_THAT(dropped.output,
+              HasSubstr("session 7 with its 1 signature is connected to no other, so nothing says "
+                        "where it is; it is left out. Keep it with --unlinked odometry-all"));
+  EXPECT_EQ(packer.exported().size(), 3u);
+  EXPECT_EQ(packer.build("--unlinked odometry-all").exit_code, 0);
+  EXPECT_EQ(packer.exported().size(), 4u);
+}
+
 TEST(Build, TreatsDamagedSignaturesAsAsked) {
   const Packer packer;
   packer.write_database(four_signatures());

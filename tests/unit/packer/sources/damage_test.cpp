@@ -105,6 +105,46 @@ TEST(Damage, IsNotALaterLayoutUnderAnEarlierVersion) {
   EXPECT_EQ(first_difference(database.read(2, PayloadSet()), three_signatures().signatures[1]), "");
 }
 
+// sqlite3 .dump saves nothing of such a file, so it is not advised.
+TEST(Damage, OfTheListOfTablesLeavesNothingForSqlite3) {
+  const test_support::TemporaryFolder folder;
+  const auto path = folder / "map.db";
+  write_rtabmap_database(path, three_signatures());
+  {
+    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(100);  // the first page's tree, which lists the tables
+    file << std::string(8, 'x');
+  }
+  try {
+    const RtabmapDatabase database(path);
+    FAIL() << "read without its list of tables";
+  } catch (const SqliteError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("rtabmap-recovery"));
+    EXPECT_THAT(error.what(), ::testing::Not(HasSubstr(".dump")));
+  }
+}
+
+TEST(Damage, IsAPoseThatNoRobotCanHave) {
+  const test_support::TemporaryFolder folder;
+  const auto path = folder / "map.db";
+  const auto damages_with = [&](auto change) {
+    RtabmapFixture fixture = three_signatures();
+    change(*fixture.signatures[1].pose);
+    write_rtabmap_database(path, fixture);
+    const RtabmapDatabase database(path);
+    std::string found;
+    for (const Damage& damage : database.outline().damages) {
+      found += std::to_string(damage.signature) + " " + damage.column + ": " + damage.problem;
+    }
+    return found;
+  };
+  EXPECT_EQ(damages_with([](Transform&) {}), "");
+  EXPECT_THAT(damages_with([](Transform& T) { T[3] = 3e38F; }),
+              HasSubstr("2 Admin.opt_poses: expected a position within 10,000 km"));
+  EXPECT_THAT(damages_with([](Transform& T) { T[0] *= 2; }), HasSubstr("expected a rotation"));
+  EXPECT_THAT(damages_with([](Transform& T) { T[10] = -T[10]; }), HasSubstr("expected a rotation"));
+}
+
 TEST(Damage, OfOnePageOfTheFileSparesTheSignaturesElsewhere) {
   const test_support::TemporaryFolder folder;
   const auto path = folder / "map.db";
