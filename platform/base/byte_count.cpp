@@ -11,27 +11,49 @@ struct Unit {
   const char* suffix;
   ByteCount bytes;
 };
+// Those that format_byte_count() writes, largest first.
 constexpr Unit kUnits[] = {{"GiB", kGiB}, {"MiB", kMiB}, {"KiB", kKiB}};
+// What people write besides: letters alone are binary, as for dd and systemd.
+constexpr Unit kOtherUnits[] = {{"G", kGiB},  {"M", kMiB},          {"K", kKiB},
+                                {"k", kKiB},  {"GB", 1000'000'000}, {"MB", 1000'000},
+                                {"kB", 1000}, {"KB", 1000},         {"B", 1}};
 constexpr ByteCount kLargest = std::numeric_limits<std::int64_t>::max();
+
+std::optional<ByteCount> unit_of(std::string_view suffix) noexcept {
+  for (const Unit& unit : kUnits) {
+    if (suffix == unit.suffix) return unit.bytes;
+  }
+  for (const Unit& unit : kOtherUnits) {
+    if (suffix == unit.suffix) return unit.bytes;
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
 std::optional<ByteCount> parse_byte_count(std::string_view text) noexcept {
-  ByteCount unit = 1;
-  for (const Unit& candidate : kUnits) {
-    if (text.ends_with(candidate.suffix)) {
-      unit = candidate.bytes;
-      text.remove_suffix(3);
-      break;
-    }
-  }
-  ByteCount value = 0;
   const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (text.empty() || error != std::errc() || rest != end || value > kLargest / unit) {
-    return std::nullopt;
+  ByteCount value = 0;
+  auto [at, error] = std::from_chars(text.data(), end, value);
+  if (text.empty() || error != std::errc()) return std::nullopt;
+  ByteCount fraction = 0, parts = 1;  // fraction / parts of a unit
+  const bool has_fraction = at != end && *at == '.';
+  if (has_fraction) {
+    const char* const first = ++at;
+    for (; at != end && *at >= '0' && *at <= '9' && at - first < 9; ++at) {
+      fraction = fraction * 10 + static_cast<ByteCount>(*at - '0');
+      parts *= 10;
+    }
+    if (at == first) return std::nullopt;
   }
-  return value * unit;
+  if (at == end) return has_fraction || value > kLargest ? std::nullopt : std::optional(value);
+  if (*at == ' ') ++at;
+  const std::optional<ByteCount> unit =
+      unit_of(std::string_view(at, static_cast<std::size_t>(end - at)));
+  if (!unit || (has_fraction && *unit == 1) || value > kLargest / *unit) return std::nullopt;
+  const ByteCount whole = value * *unit, rest = fraction * *unit / parts;
+  if (rest > kLargest - whole) return std::nullopt;
+  return whole + rest;
 }
 
 std::string format_byte_count(ByteCount bytes) {

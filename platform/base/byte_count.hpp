@@ -15,8 +15,8 @@ inline constexpr ByteCount kKiB = 1024;
 inline constexpr ByteCount kMiB = 1024 * kKiB;
 inline constexpr ByteCount kGiB = 1024 * kMiB;
 
-// Reads SIZE: decimal digits, or digits with suffix KiB, MiB or GiB ("8388608", "8MiB").
-// Nothing else is accepted: no sign, blank, fraction, other unit or value over 2^63 - 1.
+// Reads SIZE: "8388608", "6.8MiB", "8M" (a MiB, as K and G), "50MB" (1000 kB), at most 2^63 - 1.
+// A unit may follow a blank; a fraction needs a unit, has up to 9 digits and is rounded down.
 std::optional<ByteCount> parse_byte_count(std::string_view text) noexcept;
 
 // The shortest exact SIZE ("8MiB"; "8388609").

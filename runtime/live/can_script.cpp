@@ -14,6 +14,7 @@
 #include "runtime/settings/field.hpp"
 #include "runtime/settings/nearest_word.hpp"
 #include "runtime/settings/odometry_section.hpp"
+#include "runtime/settings/yaml_limits.hpp"
 #include "runtime/settings/yaml_section.hpp"
 
 namespace zonepack {
@@ -168,7 +169,9 @@ LoadedCanScript parse_can_script(const std::string& text, const std::string& pat
   LoadedCanScript loaded;
   FaultList faults(path);
   try {
-    read_script(YAML::Load(text), path, loaded.script, faults);
+    if (fits_yaml_limits(text, faults)) {
+      read_script(YAML::Load(text), path, loaded.script, faults);
+    }
   } catch (const YAML::Exception& error) {
     faults.add(error.mark, "", "not YAML: " + error.msg);
   }

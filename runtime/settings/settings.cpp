@@ -6,11 +6,11 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
 #include "runtime/settings/field.hpp"
 #include "runtime/settings/gpio_section.hpp"
 #include "runtime/settings/odometry_section.hpp"
+#include "runtime/settings/yaml_limits.hpp"
 #include "runtime/settings/yaml_section.hpp"
 
 namespace zonepack {
@@ -86,6 +86,10 @@ LoadedSettings parse_settings(const std::string& text, const std::string& path,
   loaded.settings.can.dbc_text = dbc_text;
   FaultList faults(path);
   try {
+    if (!fits_yaml_limits(text, faults)) {
+      loaded.faults = faults.take();
+      return loaded;
+    }
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
     if (documents.size() > 1) {
       faults.add(documents[1].Mark(), "", "a second document; expected one (remove the ---)");
@@ -103,18 +107,22 @@ LoadedSettings load_settings(const std::string& path) {
   LoadedSettings failed;
   errno = 0;
   std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (file) text << file.rdbuf();
-  if (!file || !text || text.str().empty()) {
+  std::string text;
+  if (file) {
+    text.resize(kLargestFile + 1);
+    file.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(file.gcount()));
+  }
+  if (text.empty()) {
     const std::string reason = errno != 0 ? std::strerror(errno) : "empty or not a file";
     failed.faults = {path + ": cannot be read: " + reason + "; expected a settings file (YAML)"};
     return failed;
   }
-  if (text.str().size() > kLargestFile) {
+  if (text.size() > kLargestFile) {
     failed.faults = {path + ": over 1 MiB; expected a settings file (YAML)"};
     return failed;
   }
-  return parse_settings(text.str(), path);
+  return parse_settings(text, path);
 }
 
 }  // namespace zonepack

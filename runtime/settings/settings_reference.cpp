@@ -90,7 +90,7 @@ struct FieldKind {
   static std::string allowed(const std::string&) { return "text"; }
   static std::string allowed(const std::vector<std::string>&) { return "list of texts"; }
   static std::string allowed(const std::optional<ByteCount>&) {
-    return "bytes, or a number with KiB, MiB or GiB: 24MiB";
+    return "bytes, or a number with KiB, MiB, GiB or K, M, G: 6.8MiB; or kB, MB, GB (of 1000)";
   }
   static std::string allowed(const PayloadChoice&) {
     return "list of " + payload_words(kEveryPayload);
@@ -162,7 +162,8 @@ constexpr const char* kIntroduction =
     "`map.path`, `can.dbc` and `state.folder` are relative to the settings file. Where a meaning\n"
     "ends in an option, such as `--budget`, that option of `zoned` replaces the key. \"Sigma\" is "
     "a\n"
-    "standard deviation; \"three sigma\" is that of the pose.\n";
+    "standard deviation; \"three sigma\" is that of the pose. A file has at most 1 MiB, and 20000\n"
+    "keys and values; of its faults the first 200 are listed.\n";
 
 constexpr const char* kCanRows =
     "| signals | signals by name | none | what the frames hold; see below |\n"

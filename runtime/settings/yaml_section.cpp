@@ -63,7 +63,23 @@ void FaultList::add(const YAML::Mark& mark, const std::string& path, const std::
   if (!mark.is_null()) fault += ":" + std::to_string(mark.line + 1);
   fault += ": ";
   if (!path.empty()) fault += path + ": ";
-  faults_.push_back(fault + text);
+  add_complete(fault + text);
+}
+
+void FaultList::add_complete(const std::string& text) {
+  if (faults_.size() < kMost) {
+    faults_.push_back(text);
+  } else {
+    ++left_out_;
+  }
+}
+
+std::vector<std::string> FaultList::take() {
+  if (left_out_ > 0) {
+    faults_.push_back(file_ + ": and " + std::to_string(left_out_) + " more");
+    left_out_ = 0;
+  }
+  return std::move(faults_);
 }
 
 YamlSection::YamlSection(const YAML::Node& node, std::string path, FaultList& faults)
@@ -79,10 +95,9 @@ YamlSection::YamlSection(const YAML::Node& node, std::string path, FaultList& fa
       continue;
     }
     const std::string& key = entry.first.Scalar();
-    const auto same = std::find_if(entries_.begin(), entries_.end(),
-                                   [&](const auto& other) { return other.first == key; });
-    if (same != entries_.end()) {
-      const auto first = key_marks_[static_cast<std::size_t>(same - entries_.begin())];
+    const auto [same, fresh] = places_.emplace(key, entries_.size());
+    if (!fresh) {
+      const YAML::Mark first = key_marks_[same->second];
       faults_.add(entry.first.Mark(), path_of(key),
                   "stands here twice, first on line " + std::to_string(first.line + 1));
       continue;
@@ -99,24 +114,19 @@ std::string YamlSection::path_of(std::string_view key) const {
 
 YAML::Node YamlSection::take(std::string_view key) {
   known_.emplace_back(key);
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (entries_[i].first != key) continue;
-    asked_[i] = true;
-    return entries_[i].second;
-  }
-  return YAML::Node(YAML::NodeType::Undefined);
+  const auto found = places_.find(key);
+  if (found == places_.end()) return YAML::Node(YAML::NodeType::Undefined);
+  asked_[found->second] = true;
+  return entries_[found->second].second;
 }
 
 bool YamlSection::has(std::string_view key) const noexcept {
-  return std::any_of(entries_.begin(), entries_.end(),
-                     [&](const auto& entry) { return entry.first == key; });
+  return places_.find(key) != places_.end();
 }
 
 YAML::Mark YamlSection::mark_of(std::string_view key) const {
-  for (const auto& [word, node] : entries_) {
-    if (word == key) return node.Mark();
-  }
-  return mark_;
+  const auto found = places_.find(key);
+  return found != places_.end() ? entries_[found->second].second.Mark() : mark_;
 }
 
 void YamlSection::finish() {
@@ -202,8 +212,8 @@ Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const c
   if (!size || *size == 0) {
     return failure(
         shown(node) +
-        " is not a size; allowed: a whole number of bytes over 0, or with KiB, MiB or GiB "
-        "(24MiB)");
+        " is not a size; allowed: a whole number of bytes over 0, or a number with KiB, MiB or "
+        "GiB (24MiB, 6.8MiB), K, M or G (the same), kB, MB or GB (of 1000)");
   }
   value = size;
   return {};

@@ -3,6 +3,9 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <cstddef>
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,7 +16,7 @@
 
 namespace zonepack {
 
-// Collects what is wrong with a file, in the order it was found.
+// Collects what is wrong with a file, in the order it was found; the first kMost are kept.
 class FaultList {
  public:
   explicit FaultList(std::string file) : file_(std::move(file)) {}
@@ -22,19 +25,23 @@ class FaultList {
   void add(const YAML::Mark& mark, const std::string& path, const std::string& text);
 
   // A complete message about another file.
-  void add_complete(const std::string& text) { faults_.push_back(text); }
+  void add_complete(const std::string& text);
 
   // What does not stop the settings from being used.
   void add_warning(const std::string& text) { warnings_.push_back(text); }
   std::vector<std::string> take_warnings() { return std::move(warnings_); }
 
-  std::vector<std::string> take() { return std::move(faults_); }
-  std::size_t size() const noexcept { return faults_.size(); }
+  // Ends with the number of those that were too many to keep.
+  std::vector<std::string> take();
+  std::size_t size() const noexcept { return faults_.size() + left_out_; }
 
  private:
+  static constexpr std::size_t kMost = 200;
+
   std::string file_;
   std::vector<std::string> faults_;
   std::vector<std::string> warnings_;
+  std::size_t left_out_ = 0;
 };
 
 // A mapping of a YAML file, read strictly: a key that was not asked for before finish() is a fault,
@@ -105,6 +112,7 @@ class YamlSection {
   FaultList& faults_;
   YAML::Mark mark_;
   std::vector<std::pair<std::string, YAML::Node>> entries_;
+  std::map<std::string, std::size_t, std::less<>> places_;  // of the keys in entries_
   std::vector<YAML::Mark> key_marks_;
   std::vector<bool> asked_;
   std::vector<std::string> known_;

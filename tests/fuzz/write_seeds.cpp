@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "tests/fuzz/input_seeds.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/support/memory_folder.hpp"
 
@@ -25,5 +26,11 @@ int main(int argc, char** argv) {
   write("block", seeds.blocks);
   write("manifest", seeds.manifests);
   write("dbc", seeds.dbcs);
+  const zonepack::fuzz::InputSeeds& inputs = zonepack::fuzz::input_seeds();
+  write("geojson", inputs.geojson);
+  write("settings", inputs.settings);
+  write("sqlite", inputs.sqlite);
+  write("recording", inputs.recordings);
+  write("protocol", inputs.messages);
   return 0;
 }

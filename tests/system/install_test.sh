@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# usage: install_test.sh BUILD SOURCE DATA: installs BUILD, builds a consumer against it, runs both.
+# usage: install_test.sh BUILD SOURCE DATA: installs BUILD, builds all kinds of consumers against it, runs them.
 set -euo pipefail
 build=$1 source=$2 data=$3
 work=$(mktemp -d)
@@ -30,3 +30,44 @@ if ldd "$work/client/read_map" | grep -E 'yaml|sodium|lz4|xxhash|sqlite'; then
 fi
 got=$("$work/client/read_map" "$work/no.sock" L1) && { echo "expected no zoned"; exit 1; }
 [ "$got" = "no zoned at $work/no.sock" ] || { echo "unexpected answer of read_map: $got"; exit 1; }
+
+# A project of C alone, and programs built without CMake.
+nobody="status 4"  # ZP_NO_SERVER
+cmake -S "$source/tests/system/consumer/c_only" -B "$work/c_only" -DCMAKE_PREFIX_PATH="$work/prefix" \
+  >"$work/configure.log" 2>&1 || { cat "$work/configure.log"; exit 1; }
+cmake --build "$work/c_only" >"$work/build.log" 2>&1 || { cat "$work/build.log"; exit 1; }
+got=$("$work/c_only/c_only" "$work/no.sock")
+[ "$got" = "$nobody" ] || { echo "the program in C says: $got"; exit 1; }
+PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name zonepack.pc)")
+export PKG_CONFIG_PATH
+read -ra flags <<<"$(pkg-config --cflags --libs zonepack)"
+cc "$source/tests/system/consumer/c_only/main.c" "${flags[@]}" -o "$work/by_hand"
+[ "$("$work/by_hand" "$work/no.sock")" = "$nobody" ] || { echo "pkg-config: the program in C fails"; exit 1; }
+c++ -std=c++20 "$source/tests/system/consumer/client/read_map.cpp" "${flags[@]}" -o "$work/read_map"
+[ "$("$work/read_map" "$work/no.sock" L1 || true)" = "no zoned at $work/no.sock" ] || { echo "pkg-config: C++ fails"; exit 1; }
+if echo "${flags[*]}" | grep -q 'include/zonepack'; then
+  echo "platform/ and runtime/ are on the include path"
+  exit 1
+fi
+
+# The unit starts the programs of this prefix.
+unit=$work/prefix/lib/systemd/system/zoned.service
+grep -q "^ExecStart=$work/prefix/bin/zoned run" "$unit" || { echo "the unit starts another zoned"; exit 1; }
+! grep -n "/usr/" "$unit" || exit 1
+
+# Another language: all it needs is installed.
+"$work/prefix/bin/zonepack" build --db "$data/hospital-small.db" --zones "$data/zones.geojson" \
+  --out "$work/whole" >/dev/null
+export ZONED_SOCKET=$work/run/zoned.sock
+"$work/prefix/bin/zoned" run --config "$work/prefix/share/zonepack/config/agilex.yaml" --map "$work/whole" \
+  --can "log:$data/scenario1_loop/can0.log" --corrections "$data/scenario1_loop/corrections.txt" \
+  --allow-degraded >"$work/zoned.log" 2>&1 &
+zoned=$!
+for ((i = 0; i < 100; ++i)); do
+  [ -S "$ZONED_SOCKET" ] && break
+  sleep 0.1
+done
+python3 "$source/tests/system/consumer/ask_status.py" "$work/prefix/share/zonepack/protocol.fbs" "$ZONED_SOCKET" |
+  jq -e '.budget_bytes > 0' >/dev/null || { cat "$work/zoned.log"; kill $zoned; exit 1; }
+kill $zoned
+[ -n "$(find "$work/prefix" -name PROTOCOL.md)" ] || { echo "no PROTOCOL.md"; exit 1; }

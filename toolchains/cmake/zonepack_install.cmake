@@ -12,7 +12,8 @@ function(zonepack_install_libraries export)
   install(EXPORT ${export} NAMESPACE zonepack:: DESTINATION ${package_dir} COMPONENT dev)
 endfunction()
 
-# Headers stand below include/zonepack as they stand in the source tree.
+# Headers stand below include/zonepack as they stand in the source tree: a program includes <zonepack/client.hpp>, or
+# <zonepack/runtime/map/loader.hpp>.
 function(zonepack_install_headers)
   foreach(dir ${ARGN})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${dir} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/zonepack
@@ -31,6 +32,25 @@ if(ZONEPACK_BUILD_PACKER)
   zonepack_install_libraries(zonepack-packer zonepack_version zonepack_packer)
   zonepack_install_headers(packer)
 endif()
+file(WRITE ${PROJECT_BINARY_DIR}/client.hpp "// SPDX-License-Identifier: Apache-2.0
+// The map in zoned's memory, for C++20.
+#pragma once
+#include \"zonepack/runtime/client/client.hpp\"
+")
+file(WRITE ${PROJECT_BINARY_DIR}/client.h "/* SPDX-License-Identifier: Apache-2.0 */
+/* The map in zoned's memory, for C. */
+#pragma once
+#include \"zonepack/runtime/client/zonepack_client.h\"
+")
+install(FILES ${PROJECT_BINARY_DIR}/client.hpp ${PROJECT_BINARY_DIR}/client.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/zonepack COMPONENT dev)
+file(RELATIVE_PATH PREFIX_FROM_PC ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+configure_file(${PROJECT_SOURCE_DIR}/toolchains/cmake/zonepack.pc.in ${PROJECT_BINARY_DIR}/zonepack.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/zonepack.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
+set(mend "include(\"${PROJECT_SOURCE_DIR}/toolchains/cmake/zonepack_installed.cmake\")")
+install(CODE "${mend}
+  zonepack_mend_headers(\"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/zonepack\")"
+        COMPONENT dev)
 foreach(program zoned zonectl)
   if(TARGET ${program})
     install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
@@ -44,8 +64,15 @@ endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/zonepack/config
         COMPONENT runtime PATTERN zoned.service EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/config/zoned.service DESTINATION lib/systemd/system COMPONENT runtime)
-install(FILES ${PROJECT_SOURCE_DIR}/runtime/pack_format/FORMAT.md OPTIONAL
+install(CODE "${mend}
+  zonepack_mend_unit(\"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/systemd/system/zoned.service\"
+                     \"\${CMAKE_INSTALL_PREFIX}\")"
+        COMPONENT runtime)
+# For programs in other languages: the files and the socket, byte by byte.
+install(FILES ${PROJECT_SOURCE_DIR}/runtime/pack_format/FORMAT.md ${PROJECT_SOURCE_DIR}/runtime/protocol/PROTOCOL.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT dev)
+install(FILES ${PROJECT_SOURCE_DIR}/runtime/protocol/protocol.fbs DESTINATION ${CMAKE_INSTALL_DATADIR}/zonepack
+        COMPONENT dev)
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/toolchains/cmake/zonepackConfig.cmake.in
                               ${PROJECT_BINARY_DIR}/zonepackConfig.cmake

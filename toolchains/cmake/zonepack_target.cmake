@@ -40,5 +40,6 @@ function(zonepack_settings target)
   target_compile_definitions(${target} PRIVATE EIGEN_DONT_VECTORIZE)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                              $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>
-                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/zonepack>)
+                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(${target} PUBLIC cxx_std_20)
 endfunction()

@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <vector>
 
-#include "runtime/map/catalog.hpp"
-#include "runtime/map/loader.hpp"
+#include <zonepack/runtime/map/catalog.hpp>
+#include <zonepack/runtime/map/loader.hpp>
 #ifdef WITH_PACKER
-#include "packer/zones/zone_file.hpp"
+#include <zonepack/packer/zones/zone_file.hpp>
 #endif
 
 int main(int argc, char** argv) {

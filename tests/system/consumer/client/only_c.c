@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "runtime/client/zonepack_client.h"
+#include <zonepack/client.h>
 
 /* The header is enough in C. */
 zp_status read_nothing(zp_client* client);

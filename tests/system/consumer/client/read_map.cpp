@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "runtime/client/client.hpp"
+#include <zonepack/client.hpp>
 
 int main(int argc, char** argv) {
   if (argc != 3) return 2;  // read_map SOCKET ZONE

@@ -47,6 +47,7 @@ TEST_F(HostileDatabase, DoesNotRunAVirtualTable) {
 }
 
 TEST_F(HostileDatabase, DoesNotComputeAGeneratedColumn) {
+  execute(path_, "DROP INDEX IDX_node_label");
   execute(path_, "ALTER TABLE Node DROP COLUMN label");
   execute(path_, "ALTER TABLE Node ADD COLUMN label TEXT AS ('computed')");
   RtabmapDatabase database(path_);

@@ -161,12 +161,14 @@ TEST_F(Outline, TakesNoSideWhenAnIdHasTwoPoses) {
   EXPECT_EQ(outline().damages[0].column, "Admin.opt_ids");
 }
 
-TEST_F(Outline, RefusesNodeIdsThatRtabmapCannotHave) {
+TEST_F(Outline, CountsNodeIdsThatRtabmapCannotHaveAsDamaged) {
   write_rtabmap_database(path_, one_of_everything("0.23.8"));
   execute(path_, "UPDATE Node SET id=5000000000 WHERE id=24");
-  EXPECT_THROW(outline(), SqliteError);
+  ASSERT_EQ(outline().damages.size(), 1u);
+  EXPECT_EQ(outline().damages[0].column, "Node.id");
   execute(path_, "UPDATE Node SET id=0 WHERE id=5000000000");
-  EXPECT_THROW(outline(), SqliteError);
+  ASSERT_EQ(outline().damages.size(), 1u);
+  EXPECT_EQ(outline().find(0), nullptr);
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ TEST_F(HostileDrawing, OfADoubleKeyAMillionTimesStopsAtTheFirstTenThousand) {
   for (int i = 0; i < 1'000'000; ++i) object += R"(,"a":1)";
   features_ = object + "}";
   const Findings findings = check();
-  EXPECT_EQ(findings.faults.size(), 10'000u - 2 + 1);  // all but "type" and one "a"; the limit
+  EXPECT_EQ(findings.faults.size(), 10'000u);  // 9,999 keys again, and the limit
   EXPECT_EQ(findings.faults.left_out(), findings.faults.size() - FindingList::kMost);
   EXPECT_LT(took_, std::chrono::seconds(10));
 }

@@ -14,10 +14,46 @@ TEST(ByteCount, ReadsIntegersAndBinarySuffixes) {
   EXPECT_EQ(parse_byte_count("2GiB"), 2147483648u);
 }
 
+TEST(ByteCount, ReadsSizesAsPeopleWriteThem) {
+  EXPECT_EQ(parse_byte_count("8M"), 8388608u);
+  EXPECT_EQ(parse_byte_count("8K"), 8192u);
+  EXPECT_EQ(parse_byte_count("8k"), 8192u);
+  EXPECT_EQ(parse_byte_count("2G"), 2147483648u);
+  EXPECT_EQ(parse_byte_count("50MB"), 50'000'000u);
+  EXPECT_EQ(parse_byte_count("5kB"), 5'000u);
+  EXPECT_EQ(parse_byte_count("1GB"), 1'000'000'000u);
+  EXPECT_EQ(parse_byte_count("64B"), 64u);
+  EXPECT_EQ(parse_byte_count("8 MiB"), 8388608u);
+  EXPECT_EQ(parse_byte_count("6.8MiB"), 7130316u);  // 7130316.8
+  EXPECT_EQ(parse_byte_count("0.5G"), 536870912u);
+  EXPECT_EQ(parse_byte_count("1.5MB"), 1'500'000u);
+  EXPECT_EQ(parse_byte_count("8589934591.999999999GiB"), 9223372036854775806u);
+}
+
 TEST(ByteCount, RefusesEverythingElse) {
-  for (const char* text :
-       {"", "KiB", "-1", "+1", " 1", "1 ", "1.5MiB", "1MB", "1kib", "1KiBKiB", "0x10",
-        "9223372036854775808", "8589934592GiB", "18446744073709551616"}) {
+  for (const char* text : {"",
+                           "KiB",
+                           "-1",
+                           "+1",
+                           " 1",
+                           "1 ",
+                           "1kib",
+                           "1KiBKiB",
+                           "0x10",
+                           "1.5",
+                           "1.5B",
+                           ".5MiB",
+                           "1.MiB",
+                           "1,5MiB",
+                           "1e3",
+                           "1MiBs",
+                           "8  MiB",
+                           "1.0000000001MiB",
+                           "1Mb",
+                           "1m",
+                           "9223372036854775808",
+                           "8589934592GiB",
+                           "18446744073709551616"}) {
     EXPECT_EQ(parse_byte_count(text), std::nullopt) << text;
   }
 }
