@@ -30,6 +30,9 @@ std::string manifest_problem(const Error& error) {
     case ErrorCode::kMismatch:
       return "slots of " + std::to_string(error.detail) + " bytes, this format has " +
              std::to_string(kSlotBytes);
+    case ErrorCode::kTooLarge:
+      return "more portals in all, or more than " + std::to_string(kMaxPortalsPerZone) +
+             " of one zone, than the format holds, or a longer file";
     default:
       return "the manifest breaks the rules of the format: " + reason_text(error);
   }

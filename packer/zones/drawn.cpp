@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "packer/zones/plane.hpp"
@@ -56,7 +57,9 @@ class DrawnFeature {
     const json* value = property(key);
     if (value == nullptr) return "";
     if (value->is_string()) {
-      if (is_plain_text(value->get_ref<const std::string&>())) return value->get<std::string>();
+      const auto& given = value->get_ref<const std::string&>();
+      // fit_name() judges names.
+      if (key == std::string_view("name") || is_plain_text(given)) return given;
       fault(std::string("has a ") + key + " that holds a control character; remove it");
       return "";
     }

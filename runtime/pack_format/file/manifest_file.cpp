@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <vector>
 
 #include "runtime/pack_format/file/pack_file.hpp"
 #include "runtime/pack_format/file/zone_name.hpp"
@@ -100,6 +101,17 @@ bool zone_is_sound(const fb::Manifest& manifest, const fb::Zone& zone,
   return zone.nodes() == nullptr || zone.nodes()->size() == zone.signatures();
 }
 
+// Of portals between known zones: no zone has more than a control cycle has time for.
+bool portals_are_few(const fb::Manifest& manifest) {
+  std::vector<std::uint16_t> counts(manifest.zones()->size(), 0);
+  for (const fb::Portal* portal : *manifest.portals()) {
+    for (const ZoneId zone : {portal->zone_a(), portal->zone_b()}) {
+      if (++counts[zone] > kMaxPortalsPerZone) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 Result<const fb::Manifest*> check_manifest(ByteSpan file) noexcept {
@@ -149,6 +161,7 @@ Result<const fb::Manifest*> check_manifest(ByteSpan file) noexcept {
       }
     }
   }
+  if (manifest.portals() != nullptr && !portals_are_few(manifest)) return ErrorCode::kTooLarge;
   if (!is_aligned(manifest.edges())) return ErrorCode::kBadStructure;
   if (manifest.edges() != nullptr) {
     for (const fb::ZoneEdge* edge : *manifest.edges()) {

@@ -49,7 +49,7 @@ def command(folder, speed, *options):
 def at_start(kind, named, folder, most, *options):
     """A start that is refused; returns its peak."""
     with open("out.txt", "w") as out:
-        # Between fork and exec a child counts this program's memory as its own: a shell stands between.
+        # Between fork and exec a child counts this program's memory, 15 MiB, as its own: the least that is seen.
         line = ["sh", "-c", '"$@"; echo "exit $?"', "sh", *map(str, command(folder, 1000, *options))]
         child = subprocess.Popen(line, stdout=out, stderr=out)
         _, _, usage = os.wait4(child.pid, 0)
