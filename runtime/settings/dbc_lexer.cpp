@@ -7,7 +7,7 @@
 namespace zonepack {
 namespace {
 
-using Kind = DbcToken::Kind;
+using TokenKind = DbcToken::Kind;
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
@@ -93,7 +93,7 @@ DbcToken DbcLexer::next() noexcept {
       advance();
       if (escaped) advance();
     }
-    token.kind = at_end() ? Kind::kOpenText : Kind::kText;
+    token.kind = at_end() ? TokenKind::kOpenText : TokenKind::kText;
     token.text = bytes_.substr(begin, at_ - begin);
     if (!at_end()) advance();
     first_on_line_ = false;
@@ -101,9 +101,9 @@ DbcToken DbcLexer::next() noexcept {
   }
   const std::size_t length = run_length(bytes_.substr(at_));
   token.text = bytes_.substr(at_, length == 0 ? 1 : length);
-  token.kind = length == 0                             ? Kind::kSign
-               : read_number(token.text, token.number) ? Kind::kNumber
-                                                       : Kind::kWord;
+  token.kind = length == 0                             ? TokenKind::kSign
+               : read_number(token.text, token.number) ? TokenKind::kNumber
+                                                       : TokenKind::kWord;
   at_ += token.text.size();
   column_ += static_cast<std::uint32_t>(token.text.size());
   return token;
