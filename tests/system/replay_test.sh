@@ -77,7 +77,7 @@ config=/nowhere.yaml exits 1 replay map
 can=/nowhere.log exits 1 replay map
 corrections=/nowhere.txt exits 1 replay map
 exits 1 replay map --events /nowhere/at/all.jsonl
-exits 2 replay map --budget 12MB
+exits 2 replay map --budget 12Mb
 exits 2 replay map --start here
 exits 2 replay map --max-signatures many
 exits 2 replay map --max-signatures -1
