@@ -29,7 +29,7 @@ TEST(BuildUsage, ExitsWith2AndNamesTheOption) {
       {"build --db map.db --zones zones.geojson --out map --jobs 0", "--jobs"},
       {"build --db map.db --zones zones.geojson --out map --snap far", "--snap"},
       {"build --db map.db --zones zones.geojson --out map --snap -1", "--snap"},
-      {"build --db map.db --zones zones.geojson --out map --max-zone-bytes 3Mb", "3MB"},
+      {"build --db map.db --zones zones.geojson --out map --max-zone-bytes 3Mb", "3Mb"},
       {"build --db map.db --zones zones.geojson --out map --colour red", "--colour"},
       {"export map", "--jsonl"},
       {"plan map --budget many", "many"},
