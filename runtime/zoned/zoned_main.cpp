@@ -63,8 +63,7 @@ void add_choices(CLI::App& app, RunChoices& choices) {
       app, "--budget", "SIZE",
       "hard limit of all that grows with the map (default: settings, else the smallest, up to a "
       "quarter of the memory here)",
-      "a SIZE: bytes, or with a unit: 8MiB, 6.8MiB, 8M, 50MB",
-      [&choices](const std::string& text) {
+      "a SIZE: bytes, or with a unit: 8MiB, 6.8MiB, 8M, 50MB", [&choices](const std::string& text) {
         choices.budget = zonepack::parse_byte_count(text);
         return choices.budget.has_value();
       });

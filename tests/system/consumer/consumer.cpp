@@ -2,7 +2,6 @@
 // Opens a map, loads its first zone and says how much it holds.
 #include <cstdio>
 #include <vector>
-
 #include <zonepack/runtime/map/catalog.hpp>
 #include <zonepack/runtime/map/loader.hpp>
 #ifdef WITH_PACKER

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include <stdio.h>
-
 #include <zonepack/client.h>
 
 int main(int argc, char** argv) {
