@@ -81,7 +81,7 @@ unsigned month_of(std::string_view word) noexcept {
 std::int64_t days_since_1970(std::int64_t year, unsigned month, unsigned day) noexcept {
   year -= month <= 2 ? 1 : 0;
   const std::int64_t era = year / 400;
-  const auto of_era = static_cast<unsigned>(year - era * 400);
+  const std::int64_t of_era = year - era * 400;
   const unsigned of_year = (153 * (month > 2 ? month - 3 : month + 9) + 2) / 5 + day - 1;
   return era * 146097 + of_era * 365 + of_era / 4 - of_era / 100 + of_year - 719468;
 }

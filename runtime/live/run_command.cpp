@@ -127,7 +127,7 @@ Outcome<void> drive(const RunArguments& arguments, RunInputs& inputs,
                .allow_degraded = arguments.allow_degraded});
   if (const auto started = run.start(); !started) return started.error();
   run.wait();
-  const auto concluded = conclude(arguments, run);
+  auto concluded = conclude(arguments, run);
   guard.waits_for("a thread that hangs in a call");
   return concluded;
 }
