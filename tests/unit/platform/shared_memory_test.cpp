@@ -80,8 +80,9 @@ TEST(SharedMemory, NeverChangesItsSize) {
   EXPECT_NE(ftruncate(memory.file().get(), 2 * kSharedBytes), 0);
 }
 
-// Not under the thread sanitizer, which would also write to pages of its own.
-__attribute__((no_sanitize("thread"))) void touch_pages(std::byte* begin, std::size_t size) {
+// Not under sanitizers, which would also touch pages of their own.
+__attribute__((no_sanitize("thread", "address", "undefined"))) void touch_pages(std::byte* begin,
+                                                                                std::size_t size) {
   for (std::size_t at = 0; at < size; at += 4096) begin[at] = std::byte{1};
 }
 
