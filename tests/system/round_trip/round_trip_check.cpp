@@ -34,7 +34,8 @@ class Plan {
  public:
   explicit Plan(const std::string& path) {
     std::ifstream file(path);
-    for (const auto& feature : nlohmann::json::parse(file)["features"]) {
+    const nlohmann::json drawing = nlohmann::json::parse(file);
+    for (const auto& feature : drawing["features"]) {
       if (feature["geometry"]["type"] != "Polygon") continue;
       zones_.push_back({feature["properties"]["name"], feature["geometry"]["coordinates"][0]});
     }
