@@ -52,7 +52,9 @@ void mutate(const std::vector<Bytes>& seeds, const std::string& kind, Entry entr
   for (std::size_t i = 0; i < rounds / 10; ++i) entry(mutator(kept[i % kept.size()]));
   EXPECT_GT(accepted, 0u);
   EXPECT_LT(accepted, rounds);
-  if (kOwnHeap) EXPECT_LT(peak() - before, bound) << "bytes over what the seeds took";
+  if (kOwnHeap) {
+    EXPECT_LT(peak() - before, bound) << "bytes over what the seeds took";
+  }
 }
 
 TEST(InputMutations, OfZoneFilesEndInOrder) {
