@@ -190,8 +190,8 @@ CanLogLine CanAscLines::parse_event(std::string_view text) noexcept {
       line.fault = "expected d (data) or r (remote request) after Rx or Tx";
       return line;
     }
-    const std::string_view count = words.next();
-    if (!to_number(count, length, 16) && !frame.rtr) {
+    const std::string_view size = words.next();
+    if (!to_number(size, length, 16) && !frame.rtr) {
       line.fault = "expected the number of data bytes";
       return line;
     }

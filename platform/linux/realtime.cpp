@@ -98,8 +98,8 @@ Result<Thread> Thread::start(const ThreadSettings& settings, bool allow_ordinary
   start->body = std::move(body);
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
-  pthread_attr_setstacksize(&attributes,
-                            std::max<std::size_t>(settings.stack_bytes, PTHREAD_STACK_MIN));
+  pthread_attr_setstacksize(
+      &attributes, std::max(settings.stack_bytes, static_cast<std::size_t>(PTHREAD_STACK_MIN)));
   auto* const handed = new std::shared_ptr<Start>(start);
   pthread_t handle{};
   const int failed = pthread_create(&handle, &attributes, run, handed);

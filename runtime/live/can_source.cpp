@@ -19,9 +19,9 @@ std::optional<double> number_in(std::string_view text) {
 
 std::optional<CanSourceChoice> parse_can_source(const std::string& text) {
   using Kind = CanSourceChoice::Kind;
-  constexpr std::pair<std::string_view, Kind> kKinds[] = {
+  constexpr std::pair<std::string_view, Kind> kSources[] = {
       {"socketcan:", Kind::kSocketCan}, {"log:", Kind::kLog}, {"sim:", Kind::kScript}};
-  for (const auto& [prefix, kind] : kKinds) {
+  for (const auto& [prefix, kind] : kSources) {
     if (!text.starts_with(prefix)) continue;
     CanSourceChoice choice{kind, text.substr(prefix.size())};
     const std::size_t at = choice.name.rfind('@');

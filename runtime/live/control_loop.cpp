@@ -91,9 +91,9 @@ void ControlLoop::step(std::uint64_t cycle, std::int64_t began_ns) noexcept {
   } else {
     input.offer.fault = refused_.exchange(ErrorCode::kOk, std::memory_order_relaxed);
   }
-  if (ports_.recorder != nullptr) {
-    ports_.recorder->on_inputs(cycle, input, offset_ns);
-    ports_.overload.lost_recordings = ports_.recorder->lost();
+  if (ports_.tap != nullptr) {
+    ports_.tap->on_inputs(cycle, input, offset_ns);
+    ports_.overload.lost_recordings = ports_.tap->lost();
   }
 
   const std::int64_t received_ns = monotonic_ns();

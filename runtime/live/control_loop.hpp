@@ -56,7 +56,7 @@ struct ControlPorts {
   SpscQueue<Command>* commands = nullptr;
   SpscQueue<CommandReply>* replies = nullptr;
   SpscQueue<LineEdge>* edges = nullptr;  // stamps by CLOCK_MONOTONIC
-  InputSink* recorder = nullptr;
+  InputSink* tap = nullptr;
   Seqlock<LiveStatus>& status;
 };
 

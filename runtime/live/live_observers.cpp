@@ -56,7 +56,7 @@ std::optional<RunStart> LiveObservers::restore(const std::string& folder,
   return RunStart{now_ns, guess.T_map_base, guess.sigma_m, guess.sigma_rad};
 }
 
-Outcome<void> LiveObservers::open_recording(const RecorderChoice& choice,
+Outcome<void> LiveObservers::open_recording(const RecordingChoice& choice,
                                             const RecordingPreface& preface,
                                             std::uint32_t most_frames) {
   const std::size_t zones = run_.accounted_map().model().needs.size();

@@ -37,7 +37,7 @@ class LiveObservers {
   // nothing is kept. The start that was saved, if any; a chosen start goes before it.
   std::optional<RunStart> restore(const std::string& folder, const PoseFilterSettings& pose,
                                   std::int64_t now_ns);
-  Outcome<void> open_recording(const RecorderChoice& choice, const RecordingPreface& preface,
+  Outcome<void> open_recording(const RecordingChoice& choice, const RecordingPreface& preface,
                                std::uint32_t most_frames);
   // Starts to listen, if the memory is served.
   Outcome<void> open_service(const ServeSettings& settings, const LineBoard& lines);

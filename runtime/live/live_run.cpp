@@ -71,7 +71,7 @@ Outcome<void> LiveRun::open_control() {
   if (!opened) return opened;
   if (inputs_.captures()) observers_.log_thread.add_task([this] { inputs_.write(); });
   if (auto chosen = choose_start(); !chosen) return chosen;
-  opened = observers_.open_recording(options_.recorder, std::exchange(options_.preface, {}),
+  opened = observers_.open_recording(options_.recording, std::exchange(options_.preface, {}),
                                      settings_.cycle.most_frames);
   if (!opened) return opened;
   opened = observers_.open_service(settings_.serve, lines_.board);
@@ -91,7 +91,7 @@ Outcome<void> LiveRun::open_control() {
                                      .commands = served ? &service.commands : nullptr,
                                      .replies = served ? &service.replies : nullptr,
                                      .edges = &lines_.inputs.edges,
-                                     .recorder = tap,
+                                     .tap = tap,
                                      .status = control_.status});
   if (tap != nullptr) tap->follow(control_.loop().last_status().state);
   change_.emplace(MapChangePorts{.settings = settings_,
@@ -110,7 +110,7 @@ Outcome<void> LiveRun::choose_start() {
   auto start = find_start(options_.start, truth, start_ns);
   if (!start) return start.error();
   const auto restored =
-      observers_.restore(options_.recorder.state_folder, settings_.pose, start_ns);
+      observers_.restore(options_.recording.state_folder, settings_.pose, start_ns);
   if (!*start) *start = restored;
   if (*start) run_.start_at(**start);
   options_.preface.start = *start;

@@ -27,7 +27,7 @@ struct LiveOptions {
   StartChoice start;
   std::string events;      // file; empty: none
   std::string record_can;  // file; empty: none
-  RecorderChoice recorder;
+  RecordingChoice recording;
   RecordingPreface preface;  // without the start
   bool allow_degraded = false;
 };

@@ -120,9 +120,9 @@ Outcome<void> drive(const RunArguments& arguments, RunInputs& inputs,
                .start = arguments.start,
                .events = arguments.events,
                .record_can = arguments.record_can,
-               .recorder = {.file = arguments.record,
-                            .state_folder = state_folder(inputs.settings),
-                            .flight_bytes = inputs.settings.recorder.bytes},
+               .recording = {.file = arguments.record,
+                             .state_folder = state_folder(inputs.settings),
+                             .flight_bytes = inputs.settings.recorder.bytes},
                .preface = std::move(*preface),
                .allow_degraded = arguments.allow_degraded});
   if (const auto started = run.start(); !started) return started.error();

@@ -10,7 +10,7 @@ constexpr const char* kWithoutNames = "/var/tmp";
 
 }  // namespace
 
-Outcome<std::string> RunRecording::open(const RecorderChoice& choice,
+Outcome<std::string> RunRecording::open(const RecordingChoice& choice,
                                         const RecordingPreface& preface, std::size_t zones,
                                         std::uint32_t most_frames) {
   if (!choice.file.empty()) {

@@ -14,7 +14,7 @@
 
 namespace zonepack {
 
-struct RecorderChoice {
+struct RecordingChoice {
   std::string file;            // --record; empty: none
   std::string state_folder;    // where the flight recorder keeps its files; empty: without names
   ByteCount flight_bytes = 0;  // 0: no flight recorder
@@ -28,7 +28,7 @@ class RunRecording final : public RunObserver {
  public:
   // Before the threads start. Fails when the file that was asked for cannot be written; a flight
   // recorder that cannot be opened is a warning, returned as a complete message or empty.
-  Outcome<std::string> open(const RecorderChoice& choice, const RecordingPreface& preface,
+  Outcome<std::string> open(const RecordingChoice& choice, const RecordingPreface& preface,
                             std::size_t zones, std::uint32_t most_frames);
 
   // A map that the run is going to be offered. Any thread.

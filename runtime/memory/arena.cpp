@@ -7,11 +7,11 @@
 namespace zonepack {
 namespace {
 
-constexpr std::size_t kPageBytes = 4096;
+constexpr std::size_t kBlockAlignment = 4096;
 
 std::byte* allocate(std::size_t bytes) {
-  const std::size_t rounded = (bytes + kPageBytes - 1) / kPageBytes * kPageBytes;
-  auto* block = static_cast<std::byte*>(std::aligned_alloc(kPageBytes, rounded));
+  const std::size_t rounded = (bytes + kBlockAlignment - 1) / kBlockAlignment * kBlockAlignment;
+  auto* block = static_cast<std::byte*>(std::aligned_alloc(kBlockAlignment, rounded));
   ZP_REQUIRE(block != nullptr);
   std::memset(block, 0, rounded);
   return block;

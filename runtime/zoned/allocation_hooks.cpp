@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The heap of glibc, with a note to AllocationWatch in front. Empty under sanitizers, which bring a
 // heap of their own.
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define ZONEPACK_FOREIGN_HEAP
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define ZONEPACK_FOREIGN_HEAP
-#endif
+#include "platform/foreign_heap.hpp"
+
 #ifndef ZONEPACK_FOREIGN_HEAP
 
 #include <cerrno>

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "platform/base/byte_count.hpp"
+#include "platform/foreign_heap.hpp"
 #include "tests/fuzz/input_entries.hpp"
 #include "tests/fuzz/input_seeds.hpp"
 #include "tests/fuzz/mutator.hpp"
@@ -17,13 +18,7 @@ namespace {
 using packer::Bytes;
 using Entry = bool (*)(ByteSpan);
 
-// Sanitizers keep freed memory and shadows of their own: under them the bounds say nothing of ours.
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define ZONEPACK_FOREIGN_HEAP
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || defined(ZONEPACK_FOREIGN_HEAP)
+#ifdef ZONEPACK_FOREIGN_HEAP
 constexpr bool kOwnHeap = false;
 #else
 constexpr bool kOwnHeap = true;

@@ -46,13 +46,16 @@ void add_chunk(Seeds& seeds, const fb::ChunkEntry& entry, ByteSpan stored) {
 void add_pack(Seeds& seeds, const Bytes& pack) {
   seeds.packs.push_back(pack);
   const PackTail tail = *check_tail(ByteSpan(pack).last(sizeof(PackTail)), pack.size());
-  std::vector<std::uint64_t> words((tail.index_size + 7) / 8);
-  const auto index = std::as_writable_bytes(std::span(words)).first(tail.index_size);
+  const auto index_size = static_cast<std::size_t>(tail.index_size);
+  std::vector<std::uint64_t> words((index_size + 7) / 8);
+  const auto index = std::as_writable_bytes(std::span(words)).first(index_size);
   std::memcpy(index.data(), pack.data() + tail.index_offset, index.size());
   seeds.indexes.emplace_back(index.begin(), index.end());
   const auto checked = check_index(ByteSpan(pack).first(sizeof(PackHeader)), index, tail);
   for (const fb::ChunkEntry* entry : *(*checked)->chunks()) {
-    add_chunk(seeds, *entry, ByteSpan(pack).subspan(entry->offset(), entry->stored_size()));
+    add_chunk(
+        seeds, *entry,
+        ByteSpan(pack).subspan(static_cast<std::size_t>(entry->offset()), entry->stored_size()));
   }
 }
 

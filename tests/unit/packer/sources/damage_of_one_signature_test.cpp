@@ -138,10 +138,10 @@ std::vector<Damaged> all_damages() {
       {"GridNotFloat", set("obstacle_cells"), zip(Matrix{1, 4, 8, Bytes(8)}), "Data.obstacle_cells",
        "found 2 x uint8"},
       {"CellSizeTooLarge",
-       "UPDATE Data SET cell_size=1e300 WHERE id=2",
+       "UPDATE Data SET cell_size=(1<<62)*1.0*(1<<62)*(1<<62) WHERE id=2",  // 2^186
        {},
        "Data.cell_size",
-       "expected a number that a float32 can hold, found 1e+300"},
+       "expected a number that a float32 can hold, found 9.807971461541689e+55"},
       {"ViewPointText",
        "UPDATE Data SET view_point_z='up' WHERE id=2",
        {},

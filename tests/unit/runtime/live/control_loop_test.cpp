@@ -78,7 +78,7 @@ class Loop : public testing::Test {
                                 .commands = &commands,
                                 .replies = &replies,
                                 .edges = &edges,
-                                .recorder = &inputs,
+                                .tap = &inputs,
                                 .status = status});
     before_run(loop);
     loop.run();
