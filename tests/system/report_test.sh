@@ -43,3 +43,8 @@ status=0
 "$bin/zonepack" report "$work/map" --out "$work/map.pdf" 2>"$work/usage" || status=$?
 [ "$status" = 2 ] || fail "expected exit code 2 for map.pdf, got $status"
 holds "$work/usage" '.html, .svg or .png'
+
+# README's picture is what the demo draws. After a wanted change: cp build/demo/scenario1.svg tests/data/readme/
+"$source/toolchains/demo.sh" "$bin" "$work/demo" >/dev/null
+cmp "$work/demo/scenario1.svg" "$source/tests/data/readme/scenario1.svg" ||
+  fail "tests/data/readme/scenario1.svg differs from the demo's: toolchains/run demo, then copy build/demo/scenario1.svg"
