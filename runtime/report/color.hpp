@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -9,7 +10,7 @@ namespace zonepack::report {
 
 struct Color {
   std::uint8_t r = 0, g = 0, b = 0;
-  friend bool operator==(const Color&, const Color&) = default;
+  friend auto operator<=>(const Color&, const Color&) = default;
 };
 
 // "#rrggbb".
@@ -17,6 +18,14 @@ std::string to_hex(Color color);
 
 // weight 0: a; 1: b.
 Color mix(Color a, Color b, double weight) noexcept;
+
+// The same colour for a dark page: lightness turned around, hue kept; pale grounds become dark
+// ones, ink becomes light. The colours of lines and blocks below that stand out on both stay as
+// they are, and all that fill a block come out light enough for dark text.
+Color dark_twin(Color color) noexcept;
+
+// Contrast of two colours, from 1 (none) to 21: WCAG 2.1, section 1.4.3.
+double contrast(Color a, Color b) noexcept;
 
 // Black or white, whichever reads better on `background`.
 Color ink_on(Color background) noexcept;
