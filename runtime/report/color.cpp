@@ -100,14 +100,6 @@ Color dark_twin(Color color) noexcept {
   return to_color(lab);
 }
 
-double contrast(Color a, Color b) noexcept {
-  const auto luminance = [](Color c) {
-    return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
-  };
-  const auto [low, high] = std::minmax({luminance(a), luminance(b)});
-  return (high + 0.05) / (low + 0.05);
-}
-
 Color ink_on(Color background) noexcept {
   const double light = 0.299 * background.r + 0.587 * background.g + 0.114 * background.b;
   return light > 110 ? kInk : kWhite;

@@ -24,9 +24,6 @@ Color mix(Color a, Color b, double weight) noexcept;
 // they are, and all that fill a block come out light enough for dark text.
 Color dark_twin(Color color) noexcept;
 
-// Contrast of two colours, from 1 (none) to 21: WCAG 2.1, section 1.4.3.
-double contrast(Color a, Color b) noexcept;
-
 // Black or white, whichever reads better on `background`.
 Color ink_on(Color background) noexcept;
 

@@ -14,6 +14,7 @@ namespace zonepack::report {
 namespace {
 
 constexpr double kPerSecond = 1000, kPerMetre = 1000, kPerRadian = 100;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<double, 3> kTolerance = {0.01, 0.01, 0.02};  // m, m, rad
 
 std::int64_t milliseconds(double t_s) noexcept {
@@ -28,7 +29,7 @@ std::vector<Waypoint> waypoints_of(const std::vector<PlayPose>& poses) {
   points.reserve(poses.size());
   double yaw = 0;
   for (const PlayPose& pose : poses) {
-    Waypoint point{pose.t_s, {std::numeric_limits<double>::quiet_NaN(), 0, 0}};
+    Waypoint point{pose.t_s, {kUnknown, kUnknown, kUnknown}};
     if (pose.known && std::isfinite(pose.p_map.x_m + pose.p_map.y_m + pose.yaw_rad)) {
       yaw += std::remainder(pose.yaw_rad - yaw, kTurn);
       point.value = {pose.p_map.x_m, pose.p_map.y_m, yaw};

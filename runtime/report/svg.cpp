@@ -46,7 +46,6 @@ std::string hint_text(std::string_view hint) {
 
 void Svg::shape(std::string_view name, std::string_view attributes, const Style& style) {
   body_.append("<").append(name).append(attributes);
-  if (style.zone) body_ += attribute("data-zone", std::to_string(*style.zone));
   body_ += attribute("fill", style.fill ? to_hex(*style.fill) : "none");
   if (style.fill) colors_.insert(*style.fill);
   if (style.stroke) colors_.insert(*style.stroke);
@@ -59,6 +58,7 @@ void Svg::shape(std::string_view name, std::string_view attributes, const Style&
     }
   }
   if (style.opacity < 1) body_ += attribute("opacity", style.opacity);
+  if (style.zone) body_ += attribute("data-zone", std::to_string(*style.zone));
   if (style.hint.empty()) {
     body_ += "/>\n";
   } else {
