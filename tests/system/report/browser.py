@@ -31,10 +31,9 @@ class Browser:
             os.dup2(reader, 3)
             os.dup2(writer, 4)
 
-        command = [program, "--headless=new", "--remote-debugging-pipe", "--no-first-run", "--disable-gpu",
+        # No sandbox: root and containers have none to give, and the pages are our own.
+        command = [program, "--headless=new", "--no-sandbox", "--remote-debugging-pipe", "--no-first-run", "--disable-gpu",
                    "--disable-dev-shm-usage", "--hide-scrollbars", f"--user-data-dir={self.profile}", "about:blank"]
-        if os.geteuid() == 0:
-            command.insert(1, "--no-sandbox")
         self.process = subprocess.Popen(command, close_fds=False, preexec_fn=give_pipes,
                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(to_read)
@@ -105,9 +104,12 @@ class Browser:
         self.call("Emulation.setEmulatedMedia", media="",
                   features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
         self.call("Emulation.setScriptExecutionDisabled", value=not script)
-        self.call("Page.navigate", url="about:blank")
+        self.go("about:blank")  # or another fragment of the same page would only be jumped to
+        self.go("file://" + os.path.abspath(path) + fragment)
+
+    def go(self, url):
         self.events.clear()
-        self.call("Page.navigate", url="file://" + os.path.abspath(path) + fragment)
+        self.call("Page.navigate", url=url)
         deadline = time.monotonic() + ANSWER_SECONDS
         while "Page.loadEventFired" not in self.events:
             self.receive(deadline)
