@@ -35,7 +35,7 @@ holds "$work/one/map.html" 'main lobby with nurses station and waiting areas'
 [ "$(head -c 4 "$work/map.png" | tail -c 3)" = PNG ] || fail "map.png is no PNG"
 
 # A page stands alone, and no part of a file is left behind.
-if grep -qE '<script|src=|href=' "$work"/one/*.html; then fail "a page refers to something outside"; fi
+if grep -qE '<(script|img|iframe|link)[^>]* (src|href)=|url\(|@import' "$work"/one/*.html; then fail "a page refers to something outside"; fi
 [ -z "$(find "$work" -name '*.part-*')" ] || fail "a part was left behind"
 
 # Another kind of file is a mistake in the usage.

@@ -19,7 +19,7 @@ import browser  # noqa: E402
 
 WIDTHS = (360, 768, 1280)
 MOMENT = 62.0  # seconds: in H2, with rooms behind still held
-HOSTILE = "<!--<script>'&<img src=x onerror=document.title='hacked'>"  # no name holds / or "
+HOSTILE = "<img src=x onerror=document.title='hacked'>'&<!--<script>"  # no name holds / or "
 HOSTILE_LABEL = "</script><script>document.title='hacked'</script>"
 faults = []
 
@@ -62,14 +62,20 @@ class Truth:
                 if line[:1].isdigit())
         self.path = [(float(r[0]), float(r[1]), float(r[2])) for r in rows]
 
-    def held(self, t):
-        zones = set()
+    def shades(self, t):
+        """The zones in memory and those being loaded."""
+        held, loading = set(), set()
         for event in self.events:
-            if event["t_ns"] <= t * 1e9 and event["event"] == "load_done":
-                zones.add(event["zone"])
-            elif event["t_ns"] <= t * 1e9 and event["event"] == "evicted":
-                zones.discard(event["zone"])
-        return zones
+            if event["t_ns"] > t * 1e9:
+                break
+            if event["event"] == "load_started":
+                loading.add(event["zone"])
+            elif event["event"] == "load_done":
+                loading.discard(event["zone"])
+                held.add(event["zone"])
+            elif event["event"] == "evicted":
+                held.discard(event["zone"])
+        return [sorted(held), sorted(loading)]
 
     def loaded(self, t):
         return sum(e["signatures"] for e in self.events if e["event"] == "load_done" and e["t_ns"] <= t * 1e9)
@@ -120,8 +126,8 @@ CONTRAST = """(() => {
   return Math.min(...texts.concat(words).map(contrast));
 })()"""
 OUTPUT = "document.querySelector('.bar output').textContent"
-HELD = """[...new Set([...document.querySelectorAll('[data-zone].held')]
-  .map(e => JSON.parse(document.getElementById('data').textContent).figures[0].zones[e.dataset.zone]))]"""
+SHADES = """['held', 'loading'].map(shade => [...new Set([...document.querySelectorAll('[data-zone].' + shade)]
+  .map(e => JSON.parse(document.getElementById('data').textContent).figures[0].zones[e.dataset.zone]))].sort())"""
 
 
 def seconds(page):
@@ -141,8 +147,8 @@ def check_moment(page, report, truth, width):
     off_m = math.dist(shown, (a * x + c * y + e, b * x + d * y + f)) / math.hypot(a, b)
     check(at[2] == "visible", f"at {width} px: the robot is not shown")
     check(off_m < 0.1, f"at {width} px: the robot is drawn {off_m:.2f} m from where it was")
-    held = set(page.value(HELD))
-    check(held == truth.held(MOMENT), f"at {width} px: shaded {held}, in memory {truth.held(MOMENT)}")
+    shades = page.value(SHADES)
+    check(shades == truth.shades(MOMENT), f"at {width} px: shaded {shades}, in memory {truth.shades(MOMENT)}")
     loaded = page.value("document.querySelector('.timed .values').textContent")
     check(f"Zonepack loaded {truth.loaded(MOMENT)}R" in loaded.replace("Zonepack unloaded", "R"),
           f"at {width} px: '{loaded}' does not say {truth.loaded(MOMENT)} loaded")
@@ -190,7 +196,14 @@ def check_hand(page, report, truth):
     check([r.split("evicted")[1] for r in rows] == [e["zone"] for e in evicted], f"evicted: {rows}")
     page.value("document.querySelectorAll('.list [role=option]')[1].click()")
     check(abs(seconds(page) - evicted[1]["t_ns"] * 1e-9) < 0.06, f"a press on an event sets {page.value(OUTPUT)}")
-    check(set(page.value(HELD)) == truth.held(evicted[1]["t_ns"] * 1e-9 + 1e-6), "the shades do not follow the list")
+    shades, known = page.value(SHADES), truth.shades(evicted[1]["t_ns"] * 1e-9 + 1e-6)
+    check(shades == known, f"from the list: shaded {shades}, in memory {known}")
+    # In the middle of a load.
+    started = next(e for e in truth.events if e["event"] == "load_started" and e["zone"] == "C3")
+    page.value(f"location.hash = '#t={started['t_ns'] * 1e-9 + 0.001:.3f}'")
+    page.value("new Promise(done => setTimeout(done, 100))")
+    shades, known = page.value(SHADES), truth.shades(started["t_ns"] * 1e-9 + 0.001)
+    check(shades == known and known[1] == ["C3"], f"during a load: shaded {shades}, in memory {known}")
 
     before = seconds(page)
     page.value("document.querySelector('.bar button').click()")

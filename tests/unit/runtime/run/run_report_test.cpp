@@ -218,7 +218,7 @@ TEST(RunReport, OfTheWorstRunHasABoundedSize) {
   const std::string html =
       to_html(make_run_report({"map", "can0.log", summary(), trace, kNoBaseline}));
   RecordProperty("bytes", std::to_string(html.size()));
-  EXPECT_LT(html.size(), 8u << 20);
+  EXPECT_LT(html.size(), 5u * 1000 * 1000);
 }
 
 TEST(RunReport, ThePictureHoldsTheRouteAndTheCurves) {
