@@ -33,5 +33,6 @@ completes "map map.db" zonepack build --db map
 completes "map" zoned replay --map m
 completes "zones.geojson" zonepack check-zones zon
 completes "pin" zonectl pi
-completes "" zonectl --socket x pose --sigma
+completes "--sigma-yaw" zonectl --socket x pose --sigma
+completes "" zonectl pose --sigma-yaw 0
 echo "pages: as the programs say"
