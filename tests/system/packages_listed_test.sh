@@ -11,4 +11,5 @@ listed() {  # LIST DOCUMENT
 listed packages toolchains/README.md
 listed packages-test toolchains/README.md
 listed packages-cross toolchains/README.md
+listed packages-deb toolchains/README.md
 listed packages-prove tests/README.md
