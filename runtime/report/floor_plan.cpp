@@ -87,10 +87,6 @@ void draw_axes(Svg& svg, const PlanView& view) {
   });
   svg.rect(view.corner(), view.width(), view.height(), {.stroke = kFaint});
 
-  const double right = view.corner().x + view.width();
-  svg.text({right, bottom + 32},
-           view.turned() ? "right: y, down: x, in metres" : "right: x, up: y, in metres",
-           {.size = 11, .color = kQuiet, .anchor = Anchor::kEnd});
   const double most_px = std::min(140.0, view.width() / 5);  // the words to the right need room
   const Ticks lengths = make_ticks(0, most_px / view.px_per_m(), 1);
   const double bar_m = lengths.values.back() > 0 ? lengths.values.back() : lengths.step;
@@ -100,7 +96,15 @@ void draw_axes(Svg& svg, const PlanView& view) {
   svg.line({bar.x, bar.y - 4}, {bar.x, bar.y + 4}, {.stroke = kInk, .stroke_width = 2});
   svg.line({bar.x + bar_px, bar.y - 4}, {bar.x + bar_px, bar.y + 4},
            {.stroke = kInk, .stroke_width = 2});
-  svg.text({bar.x + bar_px + 8, bar.y + 4}, format_number(bar_m, 2) + " m", {.size = 11});
+  const std::string length = format_number(bar_m, 2) + " m";
+  svg.text({bar.x + bar_px + 8, bar.y + 4}, length, {.size = 11});
+
+  std::string axes = view.turned() ? "right: y, down: x, in metres" : "right: x, up: y, in metres";
+  const double room = view.width() - bar_px - 24 - text_width_em(length) * 11;
+  if (text_width_em(axes) * 11 > room)
+    axes = view.turned() ? "right: y, down: x" : "right: x, up: y";
+  svg.text({view.corner().x + view.width(), bottom + 32}, axes,
+           {.size = 11, .color = kQuiet, .anchor = Anchor::kEnd});
 }
 
 struct RoutePiece {
