@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <tuple>
 
 namespace zonepack::report {
 
 struct Color {
   std::uint8_t r = 0, g = 0, b = 0;
-  friend auto operator<=>(const Color&, const Color&) = default;
+  friend bool operator==(const Color&, const Color&) = default;
+  friend bool operator<(const Color& a, const Color& b) noexcept {
+    return std::tie(a.r, a.g, a.b) < std::tie(b.r, b.g, b.b);
+  }
 };
 
 // "#rrggbb".
