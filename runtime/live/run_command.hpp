@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "runtime/live/can_source.hpp"
@@ -13,8 +14,11 @@ struct RunArguments : RunChoices {
   CanSourceChoice source;
   std::string events, json;  // json "-": standard output
   std::string record, record_can;
-  std::string program;  // version, for recordings
+  std::optional<std::string> socket;  // over ZONED_SOCKET and the settings; empty: none
+  std::string program;  // version, for recordings and those who ask
+  std::string commit;
   bool allow_degraded = false;
+  bool quiet = false;  // warnings and errors only
   bool check = false;  // see check_command.hpp
 };
 

@@ -198,10 +198,12 @@ Outcome<void> check_limits(const RunSummary& summary) {
                  ErrorCode::kTooLarge);
 }
 
-Outcome<void> write_summary(const RunSummary& summary, const std::string& json_path) {
+Outcome<void> write_summary(const RunSummary& summary, const std::string& json_path,
+                            bool output_is_taken) {
   Failures failed;
   const bool json_on_output = json_path == "-";
-  std::cout << (json_on_output ? summary_json(summary) : summary_table(summary)) << std::flush;
+  std::ostream& output = output_is_taken ? std::cerr : std::cout;
+  output << (json_on_output ? summary_json(summary) : summary_table(summary)) << std::flush;
   if (!std::cout) failed.add(failure("standard output: cannot be written", ErrorCode::kIo));
   if (!json_on_output && !json_path.empty()) {
     const auto written = write_file_atomically(json_path, summary_json(summary));

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "platform/base/byte_count.hpp"
+#include "platform/base/counted.hpp"
 #include "runtime/control/event.hpp"
 #include "runtime/ctl/commands/figures.hpp"
 
@@ -117,12 +119,6 @@ std::string budget_line(const wire::Status& status, int columns, bool color) {
 }
 
 }  // namespace
-
-std::string short_bytes(std::uint64_t bytes) {
-  if (bytes < 1024) return format("%d B", static_cast<int>(bytes));
-  const double kib = static_cast<double>(bytes) / 1024;
-  return kib < 1024 ? format("%.0f KiB", kib) : format("%.2f MiB", kib / 1024);
-}
 
 std::string event_line(const wire::Event& event) {
   std::string line = format("%12.3f s  ", static_cast<double>(event.t_ns()) / 1e9);

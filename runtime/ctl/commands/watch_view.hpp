@@ -55,9 +55,6 @@ class WatchView {
   std::deque<std::string> events_;
 };
 
-// "1.50 MiB": for people.
-std::string short_bytes(std::uint64_t bytes);
-
 // One event as a line: "12.340 s  load_done R21".
 std::string event_line(const wire::Event& event);
 
