@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "platform/base/counted.hpp"
 #include "platform/clock.hpp"
@@ -123,11 +124,12 @@ EventMessages::Message EventMessages::message_of(const Event& event, const MapVe
                   "storage's rate",
               true};
     case EventKind::kOdometryStale:
+      odometry_missing_ = true;
       return {"odometry is missing: no frame of it for odometry.timeout; look at the bus and at "
               "can.interface",
               true};
     case EventKind::kOdometryResumed:
-      return {"odometry is there", true};
+      return {"odometry is there", std::exchange(odometry_missing_, false)};
     case EventKind::kDocked:
       return {"docked: the pose is the dock's"};
     case EventKind::kUndocked:

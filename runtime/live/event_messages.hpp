@@ -54,6 +54,7 @@ class EventMessages final : public RunObserver {
   std::optional<std::int64_t> started_ns_;  // the run's clock at its start
   std::int64_t t_ns_ = 0;                   // of the last event, since the start
   bool map_ready_ = false;
+  bool odometry_missing_ = false;  // and that was said
 };
 
 }  // namespace zonepack

@@ -142,13 +142,7 @@ Outcome<void> run_and_report(const RunArguments& arguments) {
     return usage_failure(
         "--corrections and --truth are on the time of a log, which socketcan: has not");
   }
-  if (auto possible = check_outputs({{"--events", arguments.events, true},
-                                     {"--json", arguments.json, true},
-                                     {"--record", arguments.record},
-                                     {"--record-can", arguments.record_can}});
-      !possible) {
-    return possible;
-  }
+  if (auto possible = check_run_outputs(arguments); !possible) return possible;
   hold_signals();
   use_one_heap(kHeapBytes);
   auto inputs = read_run_inputs(arguments);
@@ -171,6 +165,13 @@ Outcome<void> run_and_report(const RunArguments& arguments) {
 }
 
 }  // namespace
+
+Outcome<void> check_run_outputs(const RunArguments& arguments) {
+  return check_outputs({{"--events", arguments.events, true},
+                        {"--json", arguments.json, true},
+                        {"--record", arguments.record},
+                        {"--record-can", arguments.record_can}});
+}
 
 int run_live(const RunArguments& arguments) {
   const auto done = run_and_report(arguments);

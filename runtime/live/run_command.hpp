@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "platform/base/failure.hpp"
 #include "runtime/live/can_source.hpp"
 #include "runtime/run/run_inputs.hpp"
 
@@ -21,6 +22,9 @@ struct RunArguments : RunChoices {
   bool quiet = false;  // warnings and errors only
   bool check = false;  // see check_command.hpp
 };
+
+// Before the run: whether the files that it is to write could be written.
+Outcome<void> check_run_outputs(const RunArguments& arguments);
 
 // Drives the robot's threads until the source ends or SIGTERM or SIGINT comes. The summary goes to
 // standard output, messages to standard error. Returns the exit code: 0, or 1 when something could
