@@ -13,9 +13,8 @@ using Words = std::vector<const char*>;
 
 bool is_command(const CLI::App& app, const std::string& word) {
   const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
-  return std::ranges::any_of(commands, [&](const CLI::App* command) {
-    return command->check_name(word);
-  });
+  return std::ranges::any_of(commands,
+                             [&](const CLI::App* command) { return command->check_name(word); });
 }
 
 // The option of the program or of any of its subcommands; null when there is none.

@@ -40,8 +40,8 @@ Result<void> check_output_place(const std::string& path) noexcept {
 }
 
 Result<Descriptor> open_in_place(const std::string& path, bool create) noexcept {
-  const int flags = O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK |
-                    (create ? O_CREAT | O_TRUNC : O_APPEND);
+  const int flags =
+      O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK | (create ? O_CREAT | O_TRUNC : O_APPEND);
   const std::int64_t until_ns = monotonic_ns() + kReaderWait_ns;
   Descriptor file(::open(path.c_str(), flags, 0666));
   while (!file.is_open() && errno == ENXIO && monotonic_ns() < until_ns) {

@@ -45,29 +45,29 @@ struct Words {
 CLI::Option* add_json(CLI::App& sub, Words& words, const char* help) {
   return sub
       .add_option_function<std::string>(
-          "--json",
-          [&words](const std::string& file) { words.json = file.empty() ? "-" : file; }, help)
+          "--json", [&words](const std::string& file) { words.json = file.empty() ? "-" : file; },
+          help)
       ->expected(0, 1)
       ->type_name("[FILE]");
 }
 
 void add_route(CLI::App& app, Command& command, Words& words) {
-  CLI::App& route = add(app, command, "route", "the shortest way, through any zones",
-                        {"zonectl route . R52", "zonectl route L1 R52 --hint",
-                         "zonectl route L1 R52 --json"},
-                        [&](const std::string& s) {
-                          return ctl_route(s, words.from, words.to, words.hint, words.json);
-                        });
+  CLI::App& route =
+      add(app, command, "route", "the shortest way, through any zones",
+          {"zonectl route . R52", "zonectl route L1 R52 --hint", "zonectl route L1 R52 --json"},
+          [&](const std::string& s) {
+            return ctl_route(s, words.from, words.to, words.hint, words.json);
+          });
   CLI::Option* const from = route.add_option("FROM", words.from, "a zone; '.': where the robot is");
   route.add_option("TO", words.to, "a zone");
   route.add_flag("--hint", words.hint, "zones on the way are loaded ahead of the robot");
-  CLI::Option* const json = add_json(route, words, "write it as JSON (without FILE: standard output)");
+  CLI::Option* const json =
+      add_json(route, words, "write it as JSON (without FILE: standard output)");
   route.callback([&command, &words, &route, from, json] {
     if (words.to.empty() && !words.from.empty() && json->count() > 0 && words.json != "-") {
       // --json took what is a zone: `--json A B`, or `A --json B`.
       const auto& order = route.parse_order();
-      const bool json_first =
-          std::ranges::find(order, json) < std::ranges::find(order, from);
+      const bool json_first = std::ranges::find(order, json) < std::ranges::find(order, from);
       words.to = json_first ? std::exchange(words.from, words.json) : words.json;
       words.json = "-";
     }

@@ -76,8 +76,7 @@ class Check {
     for (const std::string& text : inputs_.warnings) {
       rows_.push_back({Row::Kind::kWeak, "settings", text, ""});
     }
-    good("map",
-         inputs_.catalog.folder + ", " + counted(inputs_.catalog.zones.size(), "zone"));
+    good("map", inputs_.catalog.folder + ", " + counted(inputs_.catalog.zones.size(), "zone"));
     return true;
   }
 
@@ -91,8 +90,8 @@ class Check {
     if (map_->warning) {
       rows_.push_back({Row::Kind::kWeak, "budget", *map_->warning, "see zonepack plan"});
     } else {
-      good("budget", short_bytes(map_->limits.budget) + " (" + counted(map_->limits.budget, "byte") +
-                         ")");
+      good("budget",
+           short_bytes(map_->limits.budget) + " (" + counted(map_->limits.budget, "byte") + ")");
     }
     Residency trial(map_->needs.size(), map_->limits);
     if (const auto pinned = map_->pin(trial); !pinned) {

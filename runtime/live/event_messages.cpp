@@ -74,9 +74,10 @@ EventMessages::Message EventMessages::message_of(const Event& event, const MapVe
     case EventKind::kPoseTrusted:
       return {"the pose is trusted"};
     case EventKind::kPoseReinitialised:
-      return {"the pose was moved: refused fixes agreed with each other on another place; look at "
-              "what tells the robot where it is",
-              true};
+      return {
+          "the pose was moved: refused fixes agreed with each other on another place; look at "
+          "what tells the robot where it is",
+          true};
     case EventKind::kCorrectionRejected:
       return {"fix refused: " + reason};
     case EventKind::kMarkerIgnored:
@@ -125,9 +126,10 @@ EventMessages::Message EventMessages::message_of(const Event& event, const MapVe
               true};
     case EventKind::kOdometryStale:
       odometry_missing_ = true;
-      return {"odometry is missing: no frame of it for odometry.timeout; look at the bus and at "
-              "can.interface",
-              true};
+      return {
+          "odometry is missing: no frame of it for odometry.timeout; look at the bus and at "
+          "can.interface",
+          true};
     case EventKind::kOdometryResumed:
       return {"odometry is there", std::exchange(odometry_missing_, false)};
     case EventKind::kDocked:

@@ -51,8 +51,8 @@ class EventMessages final : public RunObserver {
   LineAllowance news_, warnings_;
   std::uint64_t left_out_ = 0;
   std::map<std::pair<std::uint32_t, ZoneId>, std::int64_t> loads_;  // under way: when they began
-  std::optional<std::int64_t> started_ns_;  // the run's clock at its start
-  std::int64_t t_ns_ = 0;                   // of the last event, since the start
+  std::optional<std::int64_t> started_ns_;                          // the run's clock at its start
+  std::int64_t t_ns_ = 0;  // of the last event, since the start
   bool map_ready_ = false;
   bool odometry_missing_ = false;  // and that was said
 };

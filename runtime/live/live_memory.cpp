@@ -35,8 +35,8 @@ Outcome<std::unique_ptr<LiveMemory>> LiveMemory::open(const Choice& choice) {
   std::unique_ptr<LiveMemory> made(new LiveMemory());
   if (!choice.socket.empty()) {
     if (const auto shared = made->share(choice); !shared) {
-      return failure("socket " + choice.socket + ": nobody can be served: " +
-                         shared.error().message +
+      return failure("socket " + choice.socket +
+                         ": nobody can be served: " + shared.error().message +
                          "; --socket PATH (serve.socket) takes another place, --socket \"\" serves "
                          "nobody",
                      shared.error().code);

@@ -21,7 +21,7 @@ class LiveMemory {
   struct Choice {
     std::uint32_t zones = 0, slots = 0;  // to have room for
     std::string socket;                  // empty: nobody is served
-    bool may_wait = true;  // for an earlier zoned that is ending, and its readers
+    bool may_wait = true;                // for an earlier zoned that is ending, and its readers
     const Notifier* manager = nullptr;
     std::vector<HandedFile>* handed = nullptr;
   };

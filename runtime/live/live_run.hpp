@@ -30,7 +30,7 @@ struct LiveOptions {
   RecordingChoice recording;
   RecordingPreface preface;  // without the start
   BuildInfo build;
-  bool quiet = false;        // only warnings and errors on standard error
+  bool quiet = false;  // only warnings and errors on standard error
   bool allow_degraded = false;
 };
 

@@ -16,7 +16,7 @@ struct RunArguments : RunChoices {
   std::string events, json;  // json "-": standard output
   std::string record, record_can;
   std::optional<std::string> socket;  // over ZONED_SOCKET and the settings; empty: none
-  std::string program;  // version, for recordings and those who ask
+  std::string program;                // version, for recordings and those who ask
   std::string commit;
   bool allow_degraded = false;
   bool quiet = false;  // warnings and errors only

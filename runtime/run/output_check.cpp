@@ -23,9 +23,9 @@ Outcome<void> check_outputs(std::initializer_list<OutputChoice> outputs) {
     const std::string name = std::string(output.option) + ": " + output.path;
     if (possible.error().code == ErrorCode::kNotFound) {
       const std::string folder = folder_of_path(output.path);
-      failed.add(failure(name + ": cannot be written: there is no folder " + folder +
-                             "; mkdir -p " + folder,
-                         ErrorCode::kNotFound));
+      failed.add(failure(
+          name + ": cannot be written: there is no folder " + folder + "; mkdir -p " + folder,
+          ErrorCode::kNotFound));
     } else {
       failed.add(cannot_write(name, possible.error()));
     }

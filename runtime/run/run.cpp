@@ -102,7 +102,8 @@ void Run::after_cycle(const CycleRecord& cycle) {
 }
 
 Outcome<void> Run::close_events() {
-  if (const auto closed = log_.close(); !closed) return cannot_write(output_name(plan_.events), closed.error());
+  if (const auto closed = log_.close(); !closed)
+    return cannot_write(output_name(plan_.events), closed.error());
   return {};
 }
 

@@ -176,8 +176,8 @@ std::string summary_table(const RunSummary& s) {
     };
     row("process, at most", bytes_text(s.live->process_peak_bytes));
     row("besides the map", bytes_text(s.live->overhead_bytes));
-    row("control thread", counted(s.live->minor_faults + s.live->major_faults, "page fault") + ", " +
-                              counted(s.live->allocations, "allocation") + ", " +
+    row("control thread", counted(s.live->minor_faults + s.live->major_faults, "page fault") +
+                              ", " + counted(s.live->allocations, "allocation") + ", " +
                               counted(s.live->missed_deadlines, "missed deadline"));
     row("cycle", timing(s.live->cycle_us));
     row("wake-up", timing(s.live->wakeup_us));

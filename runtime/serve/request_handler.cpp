@@ -88,11 +88,11 @@ void RequestHandler::greet(const Call& call) {
   const auto version = builder.CreateVector(catalog.version.data(), catalog.version.size());
   const auto kind_list =
       builder.CreateVector(reinterpret_cast<const wire::FdKind*>(kinds.data()), kinds.size());
-  const auto welcome = wire::CreateWelcome(
-      builder, kProtocolVersion, program, lineage, version, call.map.serial,
-      static_cast<std::uint32_t>(catalog.zones.size()), signatures, kind_list,
-      call.from.looking_only, kMostMessageBytes, requests_per_s_, ports_.lease_ns, call.map.epoch,
-      release, commit);
+  const auto welcome =
+      wire::CreateWelcome(builder, kProtocolVersion, program, lineage, version, call.map.serial,
+                          static_cast<std::uint32_t>(catalog.zones.size()), signatures, kind_list,
+                          call.from.looking_only, kMostMessageBytes, requests_per_s_,
+                          ports_.lease_ns, call.map.epoch, release, commit);
   call.from.greeted = true;
   call.from.answer(message.reply(call.id(), welcome), descriptors);
 }

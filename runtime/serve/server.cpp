@@ -37,9 +37,9 @@ Failure cannot_listen(const std::string& path, const Error& error) {
 std::unique_ptr<ServedMap> served_map(const Catalog& catalog, const ZoneGraph& graph,
                                       std::uint32_t serial, std::uint32_t epoch,
                                       std::span<const ZoneId> pinned) {
-  auto map = std::make_unique<ServedMap>(ServedMap{
-      catalog, graph, serial, epoch, ZoneTable(catalog.zones.size(), pinned), ZoneActivity(),
-                std::nullopt});
+  auto map = std::make_unique<ServedMap>(ServedMap{catalog, graph, serial, epoch,
+                                                   ZoneTable(catalog.zones.size(), pinned),
+                                                   ZoneActivity(), std::nullopt});
   if (Result<NodeStore> nodes = NodeStore::open(catalog); nodes) {
     map->nodes.emplace(std::move(nodes).value());
   }

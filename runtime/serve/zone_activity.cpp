@@ -7,8 +7,8 @@ namespace zonepack {
 
 void ZoneActivity::take(const Event& event) {
   const bool counts = event.kind == EventKind::kZoneEntered ||
-                      event.kind == EventKind::kLoadStarted ||
-                      event.kind == EventKind::kLoadDone || event.kind == EventKind::kEvicted;
+                      event.kind == EventKind::kLoadStarted || event.kind == EventKind::kLoadDone ||
+                      event.kind == EventKind::kEvicted;
   if (!counts || event.zone == kNoZone) return;
   Row* const row = find_or_add(event.zone);
   if (row == nullptr) return;

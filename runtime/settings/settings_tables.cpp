@@ -368,7 +368,8 @@ const Fields<MarkerPlace>& marker_fields() {
 const Fields<ServeSettings>& serve_fields() {
   using S = ServeSettings;
   static const Fields<S> fields = {
-      {"socket", &S::socket, 0, 0, "", "local socket for other programs; auto: /run/zoned/zoned.sock, and "
+      {"socket", &S::socket, 0, 0, "",
+       "local socket for other programs; auto: /run/zoned/zoned.sock, and "
        "$XDG_RUNTIME_DIR/zonepack/zoned.sock for a user other than root who has one; \"\": none; "
        "--socket"},
       {"mode", &S::mode, 0, 0, "",

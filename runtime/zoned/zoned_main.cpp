@@ -156,10 +156,11 @@ void add_run(CLI::App& app, RunArguments& arguments, Command& command) {
   run.add_flag("--check", arguments.check,
                "only say what would be refused, and what of this computer could be better");
   zonepack::add_examples(
-      run, {"zoned run --config robot.yaml --map map --can socketcan:can0 --check",
-            "zoned run --config robot.yaml --map map --can socketcan:can0 --quiet",
-            "zoned run --config robot.yaml --map map --can log:drive.log@10 --corrections fixes.txt",
-            "zoned run --config robot.yaml --map map --can socketcan:can0 --record run.zpr"});
+      run,
+      {"zoned run --config robot.yaml --map map --can socketcan:can0 --check",
+       "zoned run --config robot.yaml --map map --can socketcan:can0 --quiet",
+       "zoned run --config robot.yaml --map map --can log:drive.log@10 --corrections fixes.txt",
+       "zoned run --config robot.yaml --map map --can socketcan:can0 --record run.zpr"});
   run.callback([&] {
     need("--config", arguments.config);
     arguments.program = zonepack::version();

@@ -79,16 +79,15 @@ void FloorPlan::rasterise(Size size) const {
   raster_.zone_at.clear();
   for (int row = 0; row < raster_.rows; ++row) {
     for (int column = 0; column < raster_.columns; ++column) {
-      raster_.zone_at.push_back(zone_of({low_.x_m + (column + 0.5) * raster_.column_m,
-                                         high_.y_m - (row + 0.5) * row_m}));
+      raster_.zone_at.push_back(
+          zone_of({low_.x_m + (column + 0.5) * raster_.column_m, high_.y_m - (row + 0.5) * row_m}));
     }
   }
 }
 
 std::size_t FloorPlan::at(int column, int row) const noexcept {
   if (column < 0 || column >= raster_.columns || row < 0 || row >= raster_.rows) return kNothing;
-  return raster_.zone_at[static_cast<std::size_t>(row) *
-                             static_cast<std::size_t>(raster_.columns) +
+  return raster_.zone_at[static_cast<std::size_t>(row) * static_cast<std::size_t>(raster_.columns) +
                          static_cast<std::size_t>(column)];
 }
 

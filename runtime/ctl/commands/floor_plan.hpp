@@ -49,8 +49,8 @@ class FloorPlan {
   static constexpr std::size_t kNothing = ~std::size_t{0};
   struct Raster {
     Size size;
-    double column_m = 1;         // width of a character; its height is twice that
-    int columns = 0, rows = 0;   // that the map takes
+    double column_m = 1;               // width of a character; its height is twice that
+    int columns = 0, rows = 0;         // that the map takes
     std::vector<std::size_t> zone_at;  // row by row from the top; kNothing: outside
   };
 

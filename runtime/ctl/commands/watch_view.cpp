@@ -165,7 +165,8 @@ std::string WatchView::picture(const wire::Status& status, Size size, bool color
       static_cast<std::size_t>(std::max(size.rows - static_cast<int>(lines.size()) - 1, 0));
   const std::size_t shown = std::min(events_.size(), free);
   for (std::size_t i = events_.size() - shown; i < events_.size(); ++i) {
-    lines.push_back(begin(i == events_.size() - shown ? "events" : "").add(events_[i], kDim).done());
+    lines.push_back(
+        begin(i == events_.size() - shown ? "events" : "").add(events_[i], kDim).done());
   }
   lines.push_back(
       begin("")
@@ -244,8 +245,7 @@ std::string WatchView::line(const wire::Status& status) {
   std::string text = (zone.empty() ? "in no zone" : "in " + zone) + "  " +
                      pose_words(status.pose()) + "  " + short_bytes(status.charged_bytes()) +
                      " of " + short_bytes(status.budget_bytes()) +
-                     format("  %u of ", status.zones_resident()) +
-                     counted(status.zones(), "zone");
+                     format("  %u of ", status.zones_resident()) + counted(status.zones(), "zone");
   for (const std::string& complaint : complaints(status)) {
     text += "  " + complaint.substr(0, complaint.find(':'));
   }

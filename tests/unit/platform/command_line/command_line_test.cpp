@@ -23,9 +23,9 @@ struct Program {
     app.add_flag("--loud", loud);
     CLI::App& run = *app.add_subcommand("run", "goes on");
     run.add_option("--speed", speed);
-    run.add_option_function<std::string>("--json", [this](const std::string& file) {
-         json = file.empty() ? "-" : file;
-       })->expected(0, 1);
+    run.add_option_function<std::string>(
+           "--json", [this](const std::string& file) { json = file.empty() ? "-" : file; })
+        ->expected(0, 1);
     CLI::App& stop = *app.add_subcommand("stop", "does not");
     stop.add_option("PLACE", place)->required();
     words.insert(words.begin(), "program");

@@ -21,8 +21,8 @@ TEST(OutputCheck, NamesEveryOutputThatCannotBeWritten) {
   ASSERT_FALSE(checked);
   EXPECT_EQ(exit_code(checked.error()), 1);
   EXPECT_THAT(checked.error().message,
-              HasSubstr("--json: " + nowhere + ": cannot be written: there is no folder " +
-                        no + "; mkdir -p " + no));
+              HasSubstr("--json: " + nowhere + ": cannot be written: there is no folder " + no +
+                        "; mkdir -p " + no));
   EXPECT_THAT(checked.error().message, HasSubstr("--report: " + taken + ": cannot be written"));
   EXPECT_THAT(checked.error().message, testing::Not(HasSubstr("--events")));
 }

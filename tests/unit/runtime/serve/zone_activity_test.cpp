@@ -22,7 +22,7 @@ TEST(ZoneActivity, CountsWhatHappensToAZone) {
   activity.take(event(EventKind::kEvicted, 7, 3'000));
   activity.take(event(EventKind::kLoadStarted, 7, 4'000));
   activity.take(event(EventKind::kLoadDone, 7, 4'100));
-  activity.take(event(EventKind::kZoneWanted, 3));    // counts nothing
+  activity.take(event(EventKind::kZoneWanted, 3));         // counts nothing
   activity.take(event(EventKind::kZoneEntered, kNoZone));  // in no zone
   ASSERT_EQ(activity.rows().size(), 1u);
   const ZoneActivity::Row row = activity.of(7);
