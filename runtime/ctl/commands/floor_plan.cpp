@@ -7,7 +7,6 @@
 #include <limits>
 #include <string_view>
 
-#include "runtime/ctl/commands/screen_line.hpp"
 #include "runtime/odometry/det_math.hpp"
 
 namespace zonepack {
@@ -116,9 +115,15 @@ const char* FloorPlan::arrow_of(double yaw_rad) const noexcept {
   return utf8_ ? kArrows[sector % directions] : kPlain[sector % directions];
 }
 
-std::vector<std::string> FloorPlan::draw(Size size, const std::vector<Shade>& shades,
-                                         const std::optional<Robot>& robot, bool color) const {
-  std::vector<std::string> lines;
+int FloorPlan::columns_in(int rows) const noexcept {
+  const double width_m = high_.x_m - low_.x_m, height_m = high_.y_m - low_.y_m;
+  constexpr double kMost = 1e6;  // of a map that is almost a line
+  return static_cast<int>(std::min(std::ceil(kHeight * rows * width_m / height_m), kMost));
+}
+
+std::vector<ScreenLine> FloorPlan::draw(Size size, const std::vector<Shade>& shades,
+                                        const std::optional<Robot>& robot, bool color) const {
+  std::vector<ScreenLine> lines;
   if (empty() || size.columns < 1 || size.rows < 1) return lines;
   rasterise(size);
   struct Cell {
@@ -176,7 +181,7 @@ std::vector<std::string> FloorPlan::draw(Size size, const std::vector<Shade>& sh
     for (int column = 0; column < raster_.columns; ++column) {
       line.add(cell(column, row).glyph, cell(column, row).style);
     }
-    lines.push_back(line.done());
+    lines.push_back(std::move(line));
   }
   return lines;
 }

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/ctl/commands/screen_line.hpp"
+
 namespace zonepack {
 
 // The floor plan of a map in characters: north (y) is up, a character is twice as high as wide.
@@ -40,10 +42,13 @@ class FloorPlan {
 
   bool empty() const noexcept { return zones_.empty(); }
 
-  // Lines ending in '\n', no wider than the size and no more than its rows. shades: of each zone;
-  // zones without one are not drawn.
-  std::vector<std::string> draw(Size size, const std::vector<Shade>& shades,
-                                const std::optional<Robot>& robot, bool color) const;
+  // How many columns the plan takes in so many rows, if there are enough.
+  int columns_in(int rows) const noexcept;
+
+  // Rows of the plan, no wider than the size and no more than its rows; without line ends. shades:
+  // of each zone; zones without one are not drawn.
+  std::vector<ScreenLine> draw(Size size, const std::vector<Shade>& shades,
+                               const std::optional<Robot>& robot, bool color) const;
 
  private:
   static constexpr std::size_t kNothing = ~std::size_t{0};

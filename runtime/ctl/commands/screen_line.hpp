@@ -43,8 +43,8 @@ class ScreenLine {
   std::string done() const { return text_ + "\n"; }
 
  private:
-  const int columns_;
-  const bool color_;
+  int columns_;
+  bool color_;
   int width_ = 0;
   std::string text_;
 };

@@ -19,7 +19,8 @@ constexpr double kTimeline_s = 120;
 constexpr std::size_t kMostEvents = 200;  // more than fit on any screen
 constexpr int kLeastEvents = 5;           // rows that the plan leaves to them
 constexpr int kLeastPlanRows = 6, kLeastPlanColumns = 30;
-constexpr int kTitle = 9;  // columns of the titles on the left
+constexpr int kPlanGap = 3, kEventColumns = 45;  // of events to the right of the plan
+constexpr int kTitle = 9;                        // columns of the titles on the left
 constexpr std::size_t kWidestName = 24;
 std::string format(const char* pattern, auto... values) {
   char text[160];
@@ -160,10 +161,10 @@ std::string WatchView::picture(const wire::Status& status, Size size, bool color
   lines.push_back(timeline.done());
 
   const std::string more = add_zones(status, size, color, lines);
-  add_plan(status, size, color, lines);
-  const std::size_t free =
+  const bool has_events = add_plan(status, size, color, lines);
+  const auto free =
       static_cast<std::size_t>(std::max(size.rows - static_cast<int>(lines.size()) - 1, 0));
-  const std::size_t shown = std::min(events_.size(), free);
+  const std::size_t shown = has_events ? 0 : std::min(events_.size(), free);
   for (std::size_t i = events_.size() - shown; i < events_.size(); ++i) {
     lines.push_back(
         begin(i == events_.size() - shown ? "events" : "").add(events_[i], kDim).done());
@@ -211,12 +212,15 @@ std::string WatchView::add_zones(const wire::Status& status, Size size, bool col
   return next < zones_.size() ? counted(zones_.size() - next, "zone") + " more;  " : "";
 }
 
-// The plan takes what the last events leave.
-void WatchView::add_plan(const wire::Status& status, Size size, bool color,
+// The plan takes the free rows, with the last events to its right where the terminal is wide
+// enough (true), else leaves some rows to them.
+bool WatchView::add_plan(const wire::Status& status, Size size, bool color,
                          std::vector<std::string>& lines) const {
-  const int events = std::min(static_cast<int>(events_.size()), kLeastEvents);
-  const int rows = size.rows - static_cast<int>(lines.size()) - 1 - events;
-  if (plan_.empty() || rows < kLeastPlanRows || size.columns < kLeastPlanColumns) return;
+  const int free = size.rows - static_cast<int>(lines.size()) - 1;
+  if (plan_.empty() || free < kLeastPlanRows || size.columns < kLeastPlanColumns) return false;
+  const bool beside = plan_.columns_in(free) + kPlanGap + kEventColumns <= size.columns;
+  const int rows = beside ? free : free - std::min(static_cast<int>(events_.size()), kLeastEvents);
+  if (rows < kLeastPlanRows) return false;
   const std::string zone(view_of(status.zone()));
   std::vector<FloorPlan::Shade> shades;
   for (const Zone& each : zones_) {
@@ -235,9 +239,16 @@ void WatchView::add_plan(const wire::Status& status, Size size, bool color,
       pose != nullptr && pose->valid() && pose->pose() != nullptr) {
     robot = {pose->pose()->x(), pose->pose()->y(), pose->pose()->yaw()};
   }
-  for (std::string& line : plan_.draw({size.columns, rows}, shades, robot, color)) {
-    lines.push_back(std::move(line));
+  std::vector<ScreenLine> drawn = plan_.draw({size.columns, rows}, shades, robot, color);
+  const int right = plan_.columns_in(rows) + kPlanGap;
+  const std::size_t shown = std::min(events_.size(), drawn.size());
+  for (std::size_t row = 0; row < drawn.size(); ++row) {
+    if (beside && row < shown) {
+      drawn[row].pad_to(right).add(events_[events_.size() - shown + row], kDim);
+    }
+    lines.push_back(drawn[row].done());
   }
+  return beside;
 }
 
 std::string WatchView::line(const wire::Status& status) {

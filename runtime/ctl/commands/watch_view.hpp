@@ -56,7 +56,7 @@ class WatchView {
 
   std::string add_zones(const wire::Status& status, Size size, bool color,
                         std::vector<std::string>& lines) const;
-  void add_plan(const wire::Status& status, Size size, bool color,
+  bool add_plan(const wire::Status& status, Size size, bool color,
                 std::vector<std::string>& lines) const;
 
   FloorPlan plan_;
