@@ -13,6 +13,7 @@
 #include "packer/commands/prune.hpp"
 #include "packer/commands/report.hpp"
 #include "packer/commands/verify.hpp"
+#include "platform/command_line/command_line.hpp"
 #include "platform/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/pack_format/file/pack_file.hpp"
@@ -43,7 +44,7 @@ int main(int argc, char** argv) {
   zonepack::packer::add_prune_command(app, exit_code);
   zonepack::packer::add_report_command(app, exit_code);
   try {
-    app.parse(argc, argv);
+    zonepack::parse_command_line(app, argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const std::exception& error) {

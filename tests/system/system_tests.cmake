@@ -78,10 +78,14 @@ set_tests_properties(system/dbc_other_reader PROPERTIES SKIP_RETURN_CODE 77)
 if(TARGET zonectl)
   zonepack_test_program(serve/made_up_run.cpp zonepack_test_support zonepack_runtime)
   if(TARGET zonepack)
+    add_test(NAME system/console
+             COMMAND ${CMAKE_CURRENT_LIST_DIR}/serve/console_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                     ${PROJECT_SOURCE_DIR})
     add_test(NAME system/ending
              COMMAND ${CMAKE_CURRENT_LIST_DIR}/serve/ending_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                      ${PROJECT_SOURCE_DIR})
   endif()
   add_test(NAME system/zonectl
-           COMMAND ${CMAKE_CURRENT_LIST_DIR}/serve/zonectl_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/serve/zonectl_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
 endif()
