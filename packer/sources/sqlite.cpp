@@ -37,7 +37,7 @@ void refuse_unless_database(const fs::path& path, const std::string& name) {
   if (status.type() == fs::file_type::not_found) throw SqliteError(name + ": no such file");
   if (error) throw SqliteError(name + ": " + error.message());
   if (fs::is_directory(status)) {
-    throw SqliteError(name + ": is a folder, expected a database file");
+    throw SqliteError(name + ": is a folder, expected a database file, such as map.db");
   }
   if (!fs::is_regular_file(status)) {
     throw SqliteError(name + ": is not a regular file, expected a database file");
@@ -53,6 +53,9 @@ void refuse_unless_database(const fs::path& path, const std::string& name) {
     throw SqliteError(name + ": is " + kind + "; expected a SQLite database");
   }
   if (!first.starts_with(kDatabaseMagic)) {
+    if (const std::string kind = known_kind(first); !kind.empty()) {
+      throw SqliteError(name + ": is " + kind + "; expected a SQLite database");
+    }
     throw SqliteError(name +
                       ": is not a SQLite database (its first 16 bytes are not those of one)");
   }

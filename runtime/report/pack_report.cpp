@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "platform/base/natural_order.hpp"
 #include "runtime/report/floor_plan.hpp"
 #include "runtime/report/format.hpp"
 
@@ -47,6 +48,7 @@ FloorPlan plan_of(const PackReport& map) {
                            zone.signature_positions.end());
   }
   plan.portals = map.portals;
+  plan.raster = map.ground;
   plan.ramp = PlanRamp{"0", bytes_text(most) + " charged"};
   return plan;
 }
@@ -75,6 +77,9 @@ Table table_of(const PackReport& map) {
                           format_count(zone.stored_bytes),
                           zone.signatures == 0 ? "" : format_bytes(each)});
   }
+  std::ranges::stable_sort(table.rows, [](const auto& a, const auto& b) {
+    return natural_less(a.front(), b.front());
+  });
   return table;
 }
 
@@ -106,8 +111,10 @@ Report make_pack_report(const PackReport& map) {
   page.figures.push_back(
       {"Floor plan",
        "The darker a zone, the more bytes it takes while it is in memory. Dots are signatures, "
-       "where "
-       "the camera stood; orange bars are portals, where the robot goes from zone to zone.",
+       "where the camera stood; orange bars are portals, where the robot goes from zone to zone." +
+           std::string(map.ground ? " Black is what the mapping robot saw as occupied, grey what "
+                                    "it did not see."
+                                  : ""),
        draw_floor_plan(plan_of(map))});
   page.tables.push_back(table_of(map));
   page.origin = map.source + (map.source.empty() ? "" : " ") + "Version " + map.version + ".";

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "runtime/settings/dbc_parser.hpp"
-#include "runtime/settings/nearest_word.hpp"
+#include "platform/base/nearest_word.hpp"
 
 namespace zonepack {
 namespace {

@@ -10,7 +10,7 @@
 #include "runtime/settings/dbc_file.hpp"
 #include "runtime/settings/dbc_unit.hpp"
 #include "runtime/settings/field.hpp"
-#include "runtime/settings/nearest_word.hpp"
+#include "platform/base/nearest_word.hpp"
 
 namespace zonepack {
 namespace {

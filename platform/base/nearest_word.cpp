@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/settings/nearest_word.hpp"
+#include "platform/base/nearest_word.hpp"
 
 #include <algorithm>
 
