@@ -154,7 +154,8 @@ void print_zones(const ZonePlan& plan, const SignatureCounts* counts, std::ostre
   table.print(text);
 }
 
-void print_signatures(const SignatureCounts& counts, const ZonePlan& plan, std::ostream& text) {
+void print_signatures(const SignatureCounts& counts, const ZonePlan& plan, bool faulty,
+                      std::ostream& text) {
   const std::vector<Orphan>& orphans = counts.partition.orphans;
   const std::vector<OrphanGroup> groups = group_orphans(orphans);
   text << "\n"
@@ -167,6 +168,9 @@ void print_signatures(const SignatureCounts& counts, const ZonePlan& plan, std::
   if (groups.size() > kGroupsPrinted + 1) {
     text << "  and others near " << plural(groups.size() - kGroupsPrinted - 1, "more zone")
          << " (--json lists every signature)\n";
+  }
+  if (!orphans.empty() && faulty) {
+    text << "  zones with a faulty outline hold no signatures until they are mended\n";
   }
   if (!orphans.empty())
     text << "  build gives them to the nearest zone unless --orphans says otherwise\n";
@@ -202,11 +206,13 @@ void draw(const CheckZonesOptions& options, const ZoneFile& file, const Source* 
                  .zones = &file,
                  .places = {},
                  .partition = {},
+                 .misdrawn = {},
                  .ground = nullptr,
                  .wrap = !options.out.ends_with(".html")};
   if (source != nullptr) {
     map.places = source->counts.places;
     map.partition = source->counts.partition;
+    map.misdrawn = source->counts.misdrawn;
     map.ground = &source->ground;
   }
   if (const auto written = report::write_report(options.out, make_zones_page(map)); !written) {
@@ -242,7 +248,7 @@ int check_zones(const CheckZonesOptions& options, std::ostream& text, ordered_js
        << plural(findings.faults.size(), "fault") << ", "
        << plural(findings.warnings.size(), "warning") << "\n";
   if (!plan.zones.empty()) print_zones(plan, counts, text);
-  if (counts != nullptr) print_signatures(*counts, plan, text);
+  if (counts != nullptr) print_signatures(*counts, plan, !findings.faults.empty(), text);
   if (!options.out.empty()) text << "\n" << options.out << ": the zones as a picture\n";
   if (source) {
     for (const std::string& warning : source->ground.warnings) {

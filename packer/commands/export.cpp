@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "packer/console/output_path.hpp"
 #include "packer/export/zone_export.hpp"
 #include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
@@ -71,6 +72,7 @@ void write_to_standard_output(std::string_view piece) {
 }
 
 void run_export(const ExportArguments& arguments) {
+  require_writable(arguments.out);
   const MapReader map(arguments.folder);
   const std::vector<ZoneId> zones = chosen_zones(map, arguments.zones);
   const auto require = [&](const Result<void>& written) {
@@ -104,7 +106,7 @@ void add_export_command(CLI::App& app, int& exit_code) {
       ->type_name("Z")
       ->take_all()
       ->allow_extra_args(false);
-  command->add_flag("--jsonl", arguments->jsonl, "the format: one JSON object a line")->required();
+  command->add_flag("--jsonl", arguments->jsonl, "one JSON object a line: the default, and the only format");
   command->add_option("--out", arguments->out, "file to write; default standard output")
       ->type_name("FILE");
   command->callback([arguments, &exit_code] {

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "packer/console/command_line.hpp"
+#include "packer/console/output_path.hpp"
+#include "packer/console/words.hpp"
 #include "packer/outline/map_drawing.hpp"
 #include "packer/outline/paths.hpp"
 #include "packer/sources/rtabmap_database.hpp"
@@ -123,8 +125,8 @@ void write_outline(const OutlineOptions& options, std::ostream& text, ordered_js
                        std::to_string(outline.nodes.size()) +
                        " signatures have no optimised pose and are not drawn");
   }
-  text << options.out.string() << ": " << linked << " signatures, " << paths.size()
-       << (paths.size() == 1 ? " trajectory" : " trajectories");
+  text << options.out.string() << ": " << plural(linked, "signature") << ", "
+       << plural(paths.size(), "trajectory", "trajectories");
   if (with_map) {
     text << ", a map of " << plan.image.width << " x " << plan.image.height << " cells of "
          << plan.image.resolution_m << " m from " << plan.source;
@@ -165,6 +167,8 @@ void add_outline_command(CLI::App& app, int& exit_code) {
       "metres of\n"
       "the map frame. Files of an earlier run are replaced only after all have been written.");
   command->callback([arguments, &exit_code] {
+    require_writable_folder(arguments->options.out, "--out");
+    arguments->json.require_writable();
     ordered_json json;
     write_outline(arguments->options, arguments->json.text(), json);
     arguments->json.write(json);

@@ -6,6 +6,7 @@
 
 #include "packer/build/leftovers.hpp"
 #include "packer/console/command_line.hpp"
+#include "packer/console/words.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -17,6 +18,7 @@ struct PruneArguments {
 };
 
 void run_prune(const PruneArguments& arguments) {
+  arguments.json.require_writable();
   const std::vector<Leftover> leftovers = find_leftovers(arguments.folder);
   std::ostream& out = arguments.json.text();
   ByteCount bytes = 0;
@@ -25,11 +27,11 @@ void run_prune(const PruneArguments& arguments) {
     if (!arguments.dry_run) remove_leftover(arguments.folder, leftover);
     bytes += leftover.bytes;
     out << (arguments.dry_run ? "would remove " : "removed ") << leftover.name << " ("
-        << leftover.bytes << " bytes)\n";
+        << plural(leftover.bytes, "byte") << ")\n";
     files.push_back({{"file", leftover.name}, {"bytes", leftover.bytes}});
   }
-  out << arguments.folder << ": " << leftovers.size()
-      << (leftovers.size() == 1 ? " file, " : " files, ") << bytes << " bytes "
+  out << arguments.folder << ": " << plural(leftovers.size(), "file") << ", " << size_text(bytes)
+      << " "
       << (arguments.dry_run ? "to remove\n" : "removed\n");
   nlohmann::ordered_json json;
   json["map"] = arguments.folder;

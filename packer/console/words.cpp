@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
+#include <string_view>
 
+#include "platform/base/file_kind.hpp"
 #include "platform/base/natural_order.hpp"
 
 namespace zonepack::packer {
@@ -23,6 +25,13 @@ std::string mib_text(ByteCount bytes) {
 
 std::string size_text(ByteCount bytes) {
   return plural(bytes, "byte") + " (" + mib_text(bytes) + " MiB)";
+}
+
+std::string shell_word(const std::string& path) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789/._-+=:,@%";
+  const bool plain = !path.empty() && path.find_first_not_of(kPlain) == path.npos;
+  return plain ? path : shell_quoted(path);
 }
 
 std::vector<std::size_t> natural_order(const std::vector<std::string>& names) {

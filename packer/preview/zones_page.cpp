@@ -112,12 +112,12 @@ report::Table orphans_table(const ZonesOnMap& map) {
   report::Table table{"Signatures in no zone",
                       "Red dots in the plan. A build gives them to the nearest zone unless "
                       "--orphans says otherwise; extend the zones where the robot drives.",
-                      {{"Nearest zone"}, {"Signatures", true}, {"At most away", true}},
+                      {{"Nearest zone"}, {"Signatures", true}, {"Where"}},
                       {}};
   for (const OrphanGroup& group : group_orphans(map.partition.orphans)) {
     table.rows.push_back({map.zones->plan.zones[group.nearest_zone].name,
                           format_count(group.count),
-                          report::format_fixed(group.farthest_m, 2) + " m"});
+                          near_text(group, map.zones->plan.zones)});
   }
   return table;
 }
@@ -186,6 +186,10 @@ report::Report make_zones_page(const ZonesOnMap& map) {
     page.headline += " Of " + plural(map.places.size(), "signature") + ", " +
                      orphans_text(group_orphans(map.partition.orphans), map.zones->plan.zones) +
                      ".";
+  }
+  if (map.misdrawn) {
+    page.headline += " " + misdrawn_text(*map.misdrawn, map.partition.orphans.size(),
+                                         map.places.size()) + ".";
   }
   page.facts = facts_of(map);
   page.figures.push_back(

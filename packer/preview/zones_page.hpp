@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "packer/outline/map_drawing.hpp"
+#include "packer/zones/orphans.hpp"
 #include "packer/zones/partition.hpp"
 #include "packer/zones/zone_file.hpp"
 #include "runtime/report/report.hpp"
@@ -18,6 +19,7 @@ struct ZonesOnMap {
   const ZoneFile* zones = nullptr;
   std::vector<SignaturePlace> places;  // of the signatures with an optimised pose
   Partition partition;                 // of these; empty without zones
+  std::optional<Misdrawn> misdrawn;
   const MapDrawing* ground = nullptr;  // null without a database
   // Tables break long texts into several rows: for a sheet, which does not wrap cells.
   bool wrap = false;

@@ -63,22 +63,30 @@ std::vector<OrphanGroup> group_orphans(std::span<const Orphan> orphans) {
 }
 
 std::string near_text(const OrphanGroup& group, std::span<const PlannedZone> zones) {
-  return "within " + distance_text(group.farthest_m) + " m of " + zones[group.nearest_zone].name;
+  const std::string& name = zones[group.nearest_zone].name;
+  const std::string farthest = distance_text(group.farthest_m) + " m";
+  if (group.farthest_m <= kNearOrphan_m) return "within " + farthest + " of " + name;
+  return number_text(kNearOrphan_m) + " to " + farthest + " from " + name;
+}
+
+std::string groups_text(std::span<const OrphanGroup> groups, std::span<const PlannedZone> zones) {
+  std::size_t count = 0;
+  for (const OrphanGroup& group : groups) count += group.count;
+  const OrphanGroup& most = groups.front();
+  std::string text;
+  if (most.count < count) {
+    text = std::to_string(most.count) + " of them ";
+  } else if (count > 1) {
+    text = count == 2 ? "both " : "all ";
+  }
+  return text + near_text(most, zones);
 }
 
 std::string orphans_text(std::span<const OrphanGroup> groups, std::span<const PlannedZone> zones) {
   std::size_t count = 0;
   for (const OrphanGroup& group : groups) count += group.count;
   std::string text = std::to_string(count) + " in none";
-  if (groups.empty()) return text;
-  const OrphanGroup& most = groups.front();
-  text += ", ";
-  if (most.count < count) {
-    text += std::to_string(most.count) + " of them ";
-  } else if (count > 1) {
-    text += count == 2 ? "both " : "all ";
-  }
-  return text + near_text(most, zones);
+  return groups.empty() ? text : text + ", " + groups_text(groups, zones);
 }
 
 std::optional<Misdrawn> find_misdrawn(std::span<const PlannedZone> zones,
@@ -103,7 +111,7 @@ std::optional<Misdrawn> find_misdrawn(std::span<const PlannedZone> zones,
 
 std::string misdrawn_text(const Misdrawn& misdrawn, std::size_t orphans, std::size_t signatures) {
   return std::to_string(orphans) + " of " + std::to_string(signatures) +
-         (signatures == 1 ? " signature" : " signatures") + " in no zone; with " + misdrawn.how +
+         " in no zone; with " + misdrawn.how +
          " " + std::to_string(misdrawn.orphans) + ": the zones seem to be drawn that way; " +
          misdrawn.remedy + ", in metres of the map frame";
 }

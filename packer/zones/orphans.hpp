@@ -30,7 +30,11 @@ std::vector<OrphanGroup> group_orphans(std::span<const Orphan> orphans);
 // or, from 10 m on, to whole metres.
 std::string orphans_text(std::span<const OrphanGroup> groups, std::span<const PlannedZone> zones);
 
-// "within 0.6 m of Lobby".
+// "43 of them within 0.6 m of Lobby"; "both within ..." or "all within ..." when that is everything.
+// `groups` must not be empty.
+std::string groups_text(std::span<const OrphanGroup> groups, std::span<const PlannedZone> zones);
+
+// "within 0.6 m of Lobby", or "1 to 2.4 m from Lobby" for those farther off.
 std::string near_text(const OrphanGroup& group, std::span<const PlannedZone> zones);
 
 // The drawing holds far more signatures when its positions are read otherwise.
@@ -46,7 +50,7 @@ struct Misdrawn {
 std::optional<Misdrawn> find_misdrawn(std::span<const PlannedZone> zones,
                                       std::span<const SignaturePlace> places, std::size_t orphans);
 
-// "612 of 1095 signatures in no zone; with x and y swapped 64: ...", for a warning.
+// "612 of 1095 in no zone; with x and y swapped 64: ...", for a warning.
 std::string misdrawn_text(const Misdrawn& misdrawn, std::size_t orphans, std::size_t signatures);
 
 }  // namespace zonepack::packer
