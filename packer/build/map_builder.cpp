@@ -103,7 +103,8 @@ void MapBuilder::outline() {
   if (options_.unlinked == UnlinkedPolicy::kError && outline.unlinked() > 0) {
     throw std::runtime_error(
         options_.database.string() + ": " + std::to_string(outline.unlinked()) +
-        (outline.unlinked() == 1 ? " signature has" : " signatures have") + " no optimised pose; open the database with RTAB-Map and close it cleanly, "
+        (outline.unlinked() == 1 ? " signature has" : " signatures have") +
+        " no optimised pose; open the database with RTAB-Map and close it cleanly, "
         "or pack with --unlinked odometry or drop");
   }
 }

@@ -150,9 +150,9 @@ void run_build(const BuildArguments& arguments, std::ostream& text) {
        << plural(s.features, "feature") << " in " << plural(s.packs.size(), "zone")
        << (s.unchanged ? " (unchanged)" : "") << "\n"
        << std::fixed << std::setprecision(3) << "  charged " << size_text(s.charged_bytes) << ", "
-       << ratio(s.charged_bytes, s.feature_row_bytes)
-       << " of the database's feature rows; stored " << size_text(s.stored_bytes) << ", "
-       << ratio(s.stored_bytes, s.source_bytes) << " of the database's own\n"
+       << ratio(s.charged_bytes, s.feature_row_bytes) << " of the database's feature rows; stored "
+       << size_text(s.stored_bytes) << ", " << ratio(s.stored_bytes, s.source_bytes)
+       << " of the database's own\n"
        << "  smallest budget " << size_text(s.smallest.bytes) << "\n";
   const std::vector<Leftover> leftovers = leftovers_of(options.out);
   if (!leftovers.empty()) {
@@ -213,6 +213,11 @@ void add_build_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 256))
       ->type_name("N");
   arguments->json.add_option(*command);
+  add_examples(*command, {"zonepack build --db map.db --zones zones.geojson --out map",
+                          "zonepack build --db map.db --zones zones.geojson --out map "
+                          "--max-zone-bytes 2MiB --payload features,scan,grid",
+                          "zonepack build --db map.db --zones zones.geojson --out map --orphans "
+                          "error --damaged skip --json -"});
   command->callback([arguments, &exit_code] {
     run_build(*arguments, arguments->json.text());
     exit_code = 0;

@@ -45,8 +45,7 @@ SignatureCounts count_signatures(const MapOutline& outline, const ZonePlan& plan
   counts.unlinked = outline.nodes.size() - counts.places.size();
   if (plan.zones.empty()) return counts;
   counts.partition = partition(plan.zones, counts.places, OrphanPolicy::kDrop);
-  counts.misdrawn =
-      find_misdrawn(plan.zones, counts.places, counts.partition.orphans.size());
+  counts.misdrawn = find_misdrawn(plan.zones, counts.places, counts.partition.orphans.size());
   return counts;
 }
 
@@ -129,8 +128,7 @@ ordered_json signatures_json(const SignatureCounts& counts, const ZonePlan& plan
                        {"orphans", std::move(orphans)},
                        {"read_otherwise", nullptr}};
   if (counts.misdrawn) {
-    json["read_otherwise"] = {{"how", counts.misdrawn->how},
-                              {"orphans", counts.misdrawn->orphans}};
+    json["read_otherwise"] = {{"how", counts.misdrawn->how}, {"orphans", counts.misdrawn->orphans}};
   }
   return json;
 }
@@ -184,12 +182,12 @@ void warn_of_empty_zones(const ZonePlan& plan, const SignatureCounts& counts, Fi
   for (std::size_t i = 0; i < plan.zones.size(); ++i) {
     if (counts.partition.signatures[i] > 0) continue;
     const std::string& name = plan.zones[i].name;
-    findings.warnings.push_back({std::nullopt,
-                                 0,
-                                 name,
-                                 "zone '" + name +
-                                     "' holds no signature; was it drawn in the right place?",
-                                 {{plan.zones[i].polygon.outer}, {}, {}}});
+    findings.warnings.push_back(
+        {std::nullopt,
+         0,
+         name,
+         "zone '" + name + "' holds no signature; was it drawn in the right place?",
+         {{plan.zones[i].polygon.outer}, {}, {}}});
   }
 }
 
@@ -230,14 +228,14 @@ int check_zones(const CheckZonesOptions& options, std::ostream& text, ordered_js
   if (options.db && (!plan.zones.empty() || !options.out.empty())) {
     source = read_source(options, plan);
   }
-  const SignatureCounts* const counts =
-      source && !plan.zones.empty() ? &source->counts : nullptr;
+  const SignatureCounts* const counts = source && !plan.zones.empty() ? &source->counts : nullptr;
   if (counts != nullptr) {
     warn_of_empty_zones(plan, *counts, findings);
     if (counts->misdrawn) {
-      findings.warnings.push_back({std::nullopt, 0, "",
-                                   misdrawn_text(*counts->misdrawn, counts->partition.orphans.size(),
-                                                 counts->places.size())});
+      findings.warnings.push_back(
+          {std::nullopt, 0, "",
+           misdrawn_text(*counts->misdrawn, counts->partition.orphans.size(),
+                         counts->places.size())});
     }
   }
   if (!options.out.empty()) draw(options, file, source ? &*source : nullptr);
@@ -258,8 +256,7 @@ int check_zones(const CheckZonesOptions& options, std::ostream& text, ordered_js
   print_findings(findings.warnings, "warning: ", options.zones, text);
   print_findings(findings.faults, "fault: ", options.zones, text);
   if (!findings.faults.empty()) {
-    text << "\nMend the "
-         << (findings.faults.size() == 1 ? "fault" : "faults")
+    text << "\nMend the " << (findings.faults.size() == 1 ? "fault" : "faults")
          << " and check again; 'zonepack build' refuses this file.\n";
   }
 
@@ -298,9 +295,10 @@ void add_check_zones_command(CLI::App& app, int& exit_code) {
         return fits ? std::string() : "'" + metres + "' is no distance between 0 and 10 metres";
       })
       ->capture_default_str();
-  add_report_option(*command, arguments->options.out,
-                    "draw the zones over the database's occupancy grid, faults and signatures in no "
-                    "zone in red: .html, .svg or .png");
+  add_report_option(
+      *command, arguments->options.out,
+      "draw the zones over the database's occupancy grid, faults and signatures in no "
+      "zone in red: .html, .svg or .png");
   arguments->json.add_option(*command);
   command->footer(
       "Zones are Polygon features with \"name\" and \"zone_type\"; portals are LineString features "
@@ -308,6 +306,9 @@ void add_check_zones_command(CLI::App& app, int& exit_code) {
       "\"portal\": true and \"zones\": [\"A\", \"B\"]. Without portals they are found from shared "
       "borders.\n"
       "Exit code: 0 no faults, 1 faults or a file that cannot be read, 2 wrong usage.");
+  add_examples(*command, {"zonepack check-zones zones.geojson",
+                          "zonepack check-zones zones.geojson --db map.db --out preview.html",
+                          "zonepack check-zones zones.geojson --db map.db --snap 0.2 --json -"});
   command->callback([arguments, &exit_code] {
     require_writable(arguments->options.out);
     arguments->json.require_writable();

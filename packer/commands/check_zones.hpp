@@ -20,10 +20,10 @@ struct CheckZonesOptions {
 };
 
 // Reports every fault and warning of a zone file at once, its zones and portals and, with a
-// database, how many signatures each zone holds and which are in none; draws them, if asked, over the
-// database's occupancy grid. Writes text for people to `text`, faults last, and the same content to
-// `json`. Returns the exit code: 0 without faults, else 1. Throws
-// std::runtime_error when a file cannot be read.
+// database, how many signatures each zone holds and which are in none; draws them, if asked, over
+// the database's occupancy grid. Writes text for people to `text`, faults last, and the same
+// content to `json`. Returns the exit code: 0 without faults, else 1. Throws std::runtime_error
+// when a file cannot be read.
 int check_zones(const CheckZonesOptions& options, std::ostream& text, nlohmann::ordered_json& json);
 
 // `zonepack check-zones ZONES.geojson [--db DB] [--snap METRES] [--out FILE] [--json FILE]`.

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "packer/console/command_line.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/export/zone_export.hpp"
 #include "platform/atomic_file.hpp"
@@ -106,9 +107,12 @@ void add_export_command(CLI::App& app, int& exit_code) {
       ->type_name("Z")
       ->take_all()
       ->allow_extra_args(false);
-  command->add_flag("--jsonl", arguments->jsonl, "one JSON object a line: the default, and the only format");
+  command->add_flag("--jsonl", arguments->jsonl,
+                    "one JSON object a line: the default, and the only format");
   command->add_option("--out", arguments->out, "file to write; default standard output")
       ->type_name("FILE");
+  add_examples(*command, {"zonepack export map --out map.jsonl",
+                          "zonepack export map --zone L1 --zone H1 | head -n 1"});
   command->callback([arguments, &exit_code] {
     run_export(*arguments);
     exit_code = 0;

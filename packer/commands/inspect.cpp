@@ -48,6 +48,8 @@ void add_inspect_command(CLI::App& app, int& exit_code) {
       ->required()
       ->type_name("DIR|PACK");
   arguments->json.add_option(*command);
+  add_examples(*command, {"zonepack inspect map", "zonepack inspect map/*.zpk",
+                          "zonepack inspect map --json -"});
   command->callback([arguments, &exit_code] {
     run_inspect(*arguments);
     exit_code = 0;

@@ -166,6 +166,7 @@ void add_outline_command(CLI::App& app, int& exit_code) {
       "local grids), map.wld (for QGIS), signatures.geojson and trajectories.geojson, all in "
       "metres of\n"
       "the map frame. Files of an earlier run are replaced only after all have been written.");
+  add_examples(*command, {"zonepack outline --db map.db --out outline"});
   command->callback([arguments, &exit_code] {
     require_writable_folder(arguments->options.out, "--out");
     arguments->json.require_writable();

@@ -123,8 +123,8 @@ void print(const MapPlan& plan, std::ostream& out) {
   table.print(out);
   const std::string payload = payload_text(plan.payload);
   out << "\nloaded: core" << (payload.empty() ? "" : "," + payload) << "\nfixed "
-      << size_text(plan.fixed_bytes) << "\nsmallest budget " << size_text(plan.smallest.bytes) << ", "
-      << plural(plan.smallest.slots, "slot") << ", set by "
+      << size_text(plan.fixed_bytes) << "\nsmallest budget " << size_text(plan.smallest.bytes)
+      << ", " << plural(plan.smallest.slots, "slot") << ", set by "
       << pair_text(plan, plan.smallest.pair.zone_a, plan.smallest.pair.zone_b)
       << "\nto change maps live " << size_text(plan.live_change_bytes) << "\n";
   if (plan.budget) print(*plan.budget, plan, out);
@@ -148,6 +148,8 @@ void add_plan_command(CLI::App& app, int& exit_code) {
       ->take_all()
       ->allow_extra_args(false);
   arguments->json.add_option(*command);
+  add_examples(*command, {"zonepack plan map", "zonepack plan map --budget 8MiB --pin L1",
+                          "zonepack plan map --payload features --json -"});
   command->callback([arguments, budget, payload, &exit_code] {
     arguments->json.require_writable();
     const MapReader map(arguments->folder);

@@ -31,8 +31,7 @@ void run_prune(const PruneArguments& arguments) {
     files.push_back({{"file", leftover.name}, {"bytes", leftover.bytes}});
   }
   out << arguments.folder << ": " << plural(leftovers.size(), "file") << ", " << size_text(bytes)
-      << " "
-      << (arguments.dry_run ? "to remove\n" : "removed\n");
+      << " " << (arguments.dry_run ? "to remove\n" : "removed\n");
   nlohmann::ordered_json json;
   json["map"] = arguments.folder;
   json["dry_run"] = arguments.dry_run;
@@ -50,6 +49,7 @@ void add_prune_command(CLI::App& app, int& exit_code) {
   command->add_option("DIR", arguments->folder, "folder of the map")->required();
   command->add_flag("--dry-run", arguments->dry_run, "list them, remove nothing");
   arguments->json.add_option(*command);
+  add_examples(*command, {"zonepack prune map --dry-run", "zonepack prune map"});
   command->callback([arguments, &exit_code] {
     run_prune(*arguments);
     exit_code = 0;

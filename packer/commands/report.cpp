@@ -114,10 +114,9 @@ report::PackReport read_pack_report(const std::string& folder, PayloadMask paylo
 }
 
 CLI::Option* add_report_option(CLI::App& app, std::string& out, const std::string& help) {
-  return app.add_option("--out", out, help)
-      ->type_name("FILE")
-      ->check(
-          [](const std::string& path) { return report::check_report_name(path).error().message; });
+  return app.add_option("--out", out, help)->type_name("FILE")->check([](const std::string& path) {
+    return report::check_report_name(path).error().message;
+  });
 }
 
 void add_report_command(CLI::App& app, int& exit_code) {
@@ -135,6 +134,8 @@ void add_report_command(CLI::App& app, int& exit_code) {
                    "take the occupancy grid from this RTAB-Map database; default: from the local "
                    "grids in the packs")
       ->type_name("DB");
+  add_examples(*command, {"zonepack report map --out map.html",
+                          "zonepack report map --db map.db --out map.svg"});
   command->callback([options, &exit_code] {
     run_report(*options);
     exit_code = 0;

@@ -64,11 +64,10 @@ void print(const Verdict& verdict, const std::string& path, std::ostream& out) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) print_misplaced(verdict, path, out);
   if (!verdict.unnamed.empty()) {
-    out << path << ": "
-        << plural(verdict.unnamed.size(), "pack or part", "packs or parts")
+    out << path << ": " << plural(verdict.unnamed.size(), "pack or part", "packs or parts")
         << " that the manifest does not name; to remove "
-        << (verdict.unnamed.size() == 1 ? "it" : "them") << ": zonepack prune "
-        << shell_word(path) << "\n";
+        << (verdict.unnamed.size() == 1 ? "it" : "them") << ": zonepack prune " << shell_word(path)
+        << "\n";
   }
   out << path << ": ";
   if (verdict.whole()) {
@@ -91,6 +90,7 @@ void add_verify_command(CLI::App& app, int& exit_code) {
       ->required()
       ->type_name("DIR|PACK");
   arguments->json.add_option(*command);
+  add_examples(*command, {"zonepack verify map", "zonepack verify map --json -"});
   command->callback([arguments, &exit_code] {
     arguments->json.require_writable();
     const Verdict verdict = verify(arguments->path);

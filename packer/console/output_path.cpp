@@ -39,15 +39,15 @@ void require_writable(const std::string& file) {
   const fs::path folder = folder_of(file);
   const fs::file_status status = fs::status(folder, ignored);
   if (!fs::exists(status)) {
-    refuse(file, "there is no folder " + folder.string() +
-                     "; create it first: mkdir -p " + shell_quoted(folder.string()));
+    refuse(file, "there is no folder " + folder.string() + "; create it first: mkdir -p " +
+                     shell_quoted(folder.string()));
   }
   if (!fs::is_directory(status)) {
     refuse(file, folder.string() + " is no folder; give another path");
   }
   if (!takes_files(folder)) {
-    refuse(file, "its folder " + folder.string() +
-                     " takes no new files: " + std::strerror(errno) + "; give another path");
+    refuse(file, "its folder " + folder.string() + " takes no new files: " + std::strerror(errno) +
+                     "; give another path");
   }
 }
 
@@ -63,10 +63,10 @@ void require_writable_folder(const fs::path& folder, const std::string& option) 
   }
   const std::string instead = "; give another " + option;
   if (!fs::is_directory(there, ignored)) {
-    throw std::runtime_error(folder.string() + ": cannot create the folder: " +
-                             (there == folder ? "a file of that name exists"
-                                              : there.string() + " is no folder") +
-                             instead);
+    throw std::runtime_error(
+        folder.string() + ": cannot create the folder: " +
+        (there == folder ? "a file of that name exists" : there.string() + " is no folder") +
+        instead);
   }
   if (!takes_files(there)) {
     throw std::runtime_error(folder.string() + ": cannot be written: " + there.string() +

@@ -37,9 +37,8 @@ std::string shell_word(const std::string& path) {
 std::vector<std::size_t> natural_order(const std::vector<std::string>& names) {
   std::vector<std::size_t> order(names.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
-    return natural_less(names[a], names[b]);
-  });
+  std::ranges::sort(order,
+                    [&](std::size_t a, std::size_t b) { return natural_less(names[a], names[b]); });
   return order;
 }
 

@@ -102,24 +102,22 @@ void print(const fb::Manifest& manifest, const std::string& folder, const std::s
   const std::uint32_t portals = manifest.portals() == nullptr ? 0 : manifest.portals()->size();
   out << folder << ": map " << hex_of(*manifest.lineage()) << ", version " << version << "\n"
       << plural(manifest.zones()->size(), "zone") << ", " << plural(portals, "portal")
-      << ", payload "
-      << payload_text(manifest.payload_mask()) << ", slots of " << manifest.slot_bytes()
-      << " bytes\n\n";
-  TextTable table({"zone", "type", "signatures", "features", "slots", "charged MiB", "stored MiB",
-                   "pack"});
+      << ", payload " << payload_text(manifest.payload_mask()) << ", slots of "
+      << manifest.slot_bytes() << " bytes\n\n";
+  TextTable table(
+      {"zone", "type", "signatures", "features", "slots", "charged MiB", "stored MiB", "pack"});
   std::uint64_t signatures = 0, features = 0, slots = 0;
   ZoneBytes total;
   std::vector<std::string> names;
   for (const fb::Zone* zone : *manifest.zones()) names.push_back(zone->name()->str());
   for (const std::size_t i : natural_order(names)) {
-    const fb::Zone* const zone =
-        manifest.zones()->Get(static_cast<flatbuffers::uoffset_t>(i));
+    const fb::Zone* const zone = manifest.zones()->Get(static_cast<flatbuffers::uoffset_t>(i));
     const ZoneBytes bytes = bytes_of(manifest, *zone);
     const std::uint32_t zone_slots = zonepack::zone_slots(manifest, *zone, kDefaultPayload);
     table.add({zone->name()->str(), zone->zone_type() == nullptr ? "" : zone->zone_type()->str(),
                std::to_string(zone->signatures()), std::to_string(zone->features()),
-               std::to_string(zone_slots), mib_text(bytes.charged),
-               mib_text(bytes.stored), zone->pack()->str()});
+               std::to_string(zone_slots), mib_text(bytes.charged), mib_text(bytes.stored),
+               zone->pack()->str()});
     signatures += zone->signatures();
     features += zone->features();
     slots += zone_slots;

@@ -55,8 +55,8 @@ report::FloorPlan plan_of(const ZonesOnMap& map) {
   }
   for (const PlannedPortal& portal : zones.portals) plan.portals.push_back(portal.segment);
   for (std::size_t i = 0; i < map.places.size(); ++i) {
-    const bool in_zone = i >= map.partition.zone_of.size() ||
-                         map.partition.zone_of[i] != Partition::kNone;
+    const bool in_zone =
+        i >= map.partition.zone_of.size() || map.partition.zone_of[i] != Partition::kNone;
     if (in_zone) plan.signatures.push_back(map.places[i].p_map);
   }
   for (const Orphan& orphan : map.partition.orphans) {
@@ -115,37 +115,29 @@ report::Table orphans_table(const ZonesOnMap& map) {
                       {{"Nearest zone"}, {"Signatures", true}, {"Where"}},
                       {}};
   for (const OrphanGroup& group : group_orphans(map.partition.orphans)) {
-    table.rows.push_back({map.zones->plan.zones[group.nearest_zone].name,
-                          format_count(group.count),
+    table.rows.push_back({map.zones->plan.zones[group.nearest_zone].name, format_count(group.count),
                           near_text(group, map.zones->plan.zones)});
   }
   return table;
 }
 
 report::Table zones_table(const ZonesOnMap& map) {
-  report::Table table{"Zones",
-                      "",
-                      {{"Zone"},
-                       {"Type"},
-                       {"Label"},
-                       {"m\xC2\xB2", true},
-                       {"Portals", true},
-                       {"Signatures", true}},
-                      {}};
+  report::Table table{
+      "Zones",
+      "",
+      {{"Zone"}, {"Type"}, {"Label"}, {"m\xC2\xB2", true}, {"Portals", true}, {"Signatures", true}},
+      {}};
   const ZonePlan& plan = map.zones->plan;
   const std::vector<std::size_t> portals = portals_per_zone(plan);
   for (std::size_t i = 0; i < plan.zones.size(); ++i) {
     const PlannedZone& zone = plan.zones[i];
-    table.rows.push_back({zone.name, zone.zone_type, zone.label,
-                          report::format_fixed(area_m2(zone.polygon), 1),
-                          format_count(portals[i]),
-                          i < map.partition.signatures.size()
-                              ? format_count(map.partition.signatures[i])
-                              : ""});
+    table.rows.push_back(
+        {zone.name, zone.zone_type, zone.label, report::format_fixed(area_m2(zone.polygon), 1),
+         format_count(portals[i]),
+         i < map.partition.signatures.size() ? format_count(map.partition.signatures[i]) : ""});
   }
-  std::ranges::sort(table.rows, [](const auto& a, const auto& b) {
-    return natural_less(a.front(), b.front());
-  });
+  std::ranges::sort(
+      table.rows, [](const auto& a, const auto& b) { return natural_less(a.front(), b.front()); });
   return table;
 }
 
@@ -188,8 +180,8 @@ report::Report make_zones_page(const ZonesOnMap& map) {
                      ".";
   }
   if (map.misdrawn) {
-    page.headline += " " + misdrawn_text(*map.misdrawn, map.partition.orphans.size(),
-                                         map.places.size()) + ".";
+    page.headline +=
+        " " + misdrawn_text(*map.misdrawn, map.partition.orphans.size(), map.places.size()) + ".";
   }
   page.facts = facts_of(map);
   page.figures.push_back(
@@ -203,9 +195,8 @@ report::Report make_zones_page(const ZonesOnMap& map) {
                                          findings.faults, map.wrap));
   }
   if (!findings.warnings.empty()) {
-    page.tables.push_back(
-        findings_table("Warnings", "The file can be packed, but look at these.", findings.warnings,
-                       map.wrap));
+    page.tables.push_back(findings_table("Warnings", "The file can be packed, but look at these.",
+                                         findings.warnings, map.wrap));
   }
   if (!map.partition.orphans.empty()) page.tables.push_back(orphans_table(map));
   page.tables.push_back(zones_table(map));

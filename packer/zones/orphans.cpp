@@ -27,8 +27,8 @@ constexpr std::array<Reading, 9> kReadings = {{
     {"y mirrored", "turn the sign of every y; in an image y points down, in the map up", 1, 0, 0,
      -1},
     {"a half turn", "turn the drawing by 180 degrees around (0, 0)", -1, 0, 0, -1},
-    {"a quarter turn to the left", "turn the drawing by 90 degrees to the left around (0, 0)", 0,
-     1, -1, 0},
+    {"a quarter turn to the left", "turn the drawing by 90 degrees to the left around (0, 0)", 0, 1,
+     -1, 0},
     {"a quarter turn to the right", "turn the drawing by 90 degrees to the right around (0, 0)", 0,
      -1, 1, 0},
     {"coordinates read as centimetres", "divide every coordinate by 100", 100, 0, 0, 100},
@@ -56,9 +56,8 @@ std::vector<OrphanGroup> group_orphans(std::span<const Orphan> orphans) {
   }
   std::vector<OrphanGroup> sorted;
   for (const auto& [key, group] : groups) sorted.push_back(group);
-  std::ranges::stable_sort(sorted, [](const OrphanGroup& a, const OrphanGroup& b) {
-    return a.count > b.count;
-  });
+  std::ranges::stable_sort(
+      sorted, [](const OrphanGroup& a, const OrphanGroup& b) { return a.count > b.count; });
   return sorted;
 }
 
@@ -90,8 +89,7 @@ std::string orphans_text(std::span<const OrphanGroup> groups, std::span<const Pl
 }
 
 std::optional<Misdrawn> find_misdrawn(std::span<const PlannedZone> zones,
-                                      std::span<const SignaturePlace> places,
-                                      std::size_t orphans) {
+                                      std::span<const SignaturePlace> places, std::size_t orphans) {
   if (orphans == 0 || orphans * 4 < places.size()) return std::nullopt;
   std::optional<Misdrawn> best;
   for (const Reading& reading : kReadings) {
@@ -110,10 +108,10 @@ std::optional<Misdrawn> find_misdrawn(std::span<const PlannedZone> zones,
 }
 
 std::string misdrawn_text(const Misdrawn& misdrawn, std::size_t orphans, std::size_t signatures) {
-  return std::to_string(orphans) + " of " + std::to_string(signatures) +
-         " in no zone; with " + misdrawn.how +
-         " " + std::to_string(misdrawn.orphans) + ": the zones seem to be drawn that way; " +
-         misdrawn.remedy + ", in metres of the map frame";
+  return std::to_string(orphans) + " of " + std::to_string(signatures) + " in no zone; with " +
+         misdrawn.how + " " + std::to_string(misdrawn.orphans) +
+         ": the zones seem to be drawn that way; " + misdrawn.remedy +
+         ", in metres of the map frame";
 }
 
 }  // namespace zonepack::packer

@@ -30,8 +30,8 @@ std::vector<OrphanGroup> group_orphans(std::span<const Orphan> orphans);
 // or, from 10 m on, to whole metres.
 std::string orphans_text(std::span<const OrphanGroup> groups, std::span<const PlannedZone> zones);
 
-// "43 of them within 0.6 m of Lobby"; "both within ..." or "all within ..." when that is everything.
-// `groups` must not be empty.
+// "43 of them within 0.6 m of Lobby"; "both within ..." or "all within ..." when that is
+// everything. `groups` must not be empty.
 std::string groups_text(std::span<const OrphanGroup> groups, std::span<const PlannedZone> zones);
 
 // "within 0.6 m of Lobby", or "1 to 2.4 m from Lobby" for those farther off.

@@ -210,8 +210,8 @@ std::vector<Ring> common_region(const Polygon& a, const Polygon& b, MeasuringSte
     // No edges cross within a strip, so its spans just above the bottom and just below the top are
     // the same ones in the same order.
     const double inset = (ys[i + 1] - ys[i]) * 1e-6;
-    const auto low = common_spans(passing_a.passes_at(ys[i] + inset),
-                                  passing_b.passes_at(ys[i] + inset));
+    const auto low =
+        common_spans(passing_a.passes_at(ys[i] + inset), passing_b.passes_at(ys[i] + inset));
     const auto high = common_spans(passing_a.passes_at(ys[i + 1] - inset),
                                    passing_b.passes_at(ys[i + 1] - inset));
     if (!steps.take(1 + low.size() + high.size()) || low.size() != high.size()) return pieces;

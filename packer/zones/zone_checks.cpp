@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kMaxDegreesExtent = 0.1;  // no building measures 10 cm
 constexpr double kFlat_m = 1e-6;
-constexpr std::size_t kMostPointsDrawn = 100;  // of one fault
+constexpr std::size_t kMostPointsDrawn = 100;    // of one fault
 constexpr std::size_t kMostOutlineFaults = 100;  // of one outline
 
 std::string edge_text(const Ring& ring, std::size_t i) {
@@ -65,8 +65,8 @@ bool check_ring(const Ring& ring, const std::string& what, std::vector<OutlineFa
     return false;
   }
   if (area_m2({ring, {}}) < kMinZoneArea_m2) {
-    faults.push_back({"has no area: its " + what +
-                      " encloses less than 1 cm2; are the coordinates in metres?"});
+    faults.push_back(
+        {"has no area: its " + what + " encloses less than 1 cm2; are the coordinates in metres?"});
     return false;
   }
   return true;
@@ -103,7 +103,9 @@ bool check_overlap(const DrawnZone& a, const DrawnZone& b, MeasuringSteps& steps
   if (common <= kMaxOverlap * smaller) return true;
   const std::string& small_name = area_b <= area_a ? b.zone.name : a.zone.name;
   findings.faults.push_back(
-      {b.feature, b.line, b.zone.name,
+      {b.feature,
+       b.line,
+       b.zone.name,
        "zones '" + a.zone.name + "' and '" + b.zone.name + "' overlap by " + number_text(common) +
            " m2, " + number_text(100 * common / smaller) + " % of '" + small_name +
            "'; at most 1 % is allowed: move the border that they share, or give zones on different "
@@ -189,9 +191,9 @@ std::vector<OutlineFault> outline_faults(const Polygon& polygon) {
     const Polygon hole{polygon.holes[i], {}};
     const std::optional<double> inside = common_area_m2(hole, outer, steps);
     if (!inside || faults.size() > kMostOutlineFaults) {
-      faults.push_back(
-          {"has holes that cross its outline or each other in too many places, " + what +
-           " among them; simplify it (QGIS: Vector > Geometry Tools > Simplify)"});
+      faults.push_back({"has holes that cross its outline or each other in too many places, " +
+                        what +
+                        " among them; simplify it (QGIS: Vector > Geometry Tools > Simplify)"});
       return faults;
     }
     if (area_m2(hole) - *inside > kMinZoneArea_m2) {

@@ -44,8 +44,8 @@ std::string read_text(const std::string& path) {
                              "; simplify the outlines (QGIS: Vector > Geometry Tools > Simplify)");
   }
   if (!error && size == 0) {
-    throw std::runtime_error(path +
-                             ": cannot read the zone file: it is empty (0 bytes); expected GeoJSON");
+    throw std::runtime_error(
+        path + ": cannot read the zone file: it is empty (0 bytes); expected GeoJSON");
   }
   std::ostringstream text;
   if (file) text << file.rdbuf();

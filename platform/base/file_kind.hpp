@@ -20,9 +20,9 @@ std::string stand_in_at(const std::string& path);
 // stand_in(), else "a SQLite database", "a pack of a map (*.zpk)" and so on. Empty when unknown.
 std::string known_kind(std::string_view first_bytes);
 
-// What stands at a path where a file that begins with `magic` was expected: "is a folder", "is empty
-// (0 bytes)", or "is " and its known_kind(). Empty when that says nothing: for the expected kind, an
-// unknown kind and a missing file.
+// What stands at a path where a file that begins with `magic` was expected: "is a folder", "is
+// empty (0 bytes)", or "is " and its known_kind(). Empty when that says nothing: for the expected
+// kind, an unknown kind and a missing file.
 std::string misplaced_at(const std::string& path, std::string_view magic);
 
 // A path as one word of a shell.

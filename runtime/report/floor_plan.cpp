@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kPlanLeft = 40, kPlanRight = 14, kPlanAxisBelow = 40, kMostHeight = 760;
 constexpr double kMargin_m = 0.4;
-constexpr double kRasterShown_m = 2;  // how far a grid beyond zones and signatures is shown
-constexpr double kArrowEvery = 110;  // pixels of route
+constexpr double kRasterShown_m = 2;          // how far a grid beyond zones and signatures is shown
+constexpr double kArrowEvery = 110;           // pixels of route
 constexpr Color kZoneLine{0x3a, 0x5f, 0x8a};  // not to be taken for a wall
 constexpr Style kRouteHalo{.stroke = kWhite, .stroke_width = 5.5, .opacity = 0.8, .round = true};
 

@@ -8,7 +8,6 @@
 namespace zonepack::report {
 namespace {
 
-
 constexpr double kBadge = 8;  // radius, pixels
 
 bool is_finite(Point2 p) noexcept { return std::isfinite(p.x_m) && std::isfinite(p.y_m); }
@@ -25,9 +24,8 @@ Point2 middle(const Segment2& line) noexcept {
 std::optional<Point2> place_of(const PlanFault& fault) {
   if (!fault.points.empty()) return fault.points.front();
   if (!fault.lines.empty()) return middle(fault.lines.front());
-  const auto drawn = std::ranges::find_if(fault.areas, [](const Ring& ring) {
-    return !ring.empty();
-  });
+  const auto drawn =
+      std::ranges::find_if(fault.areas, [](const Ring& ring) { return !ring.empty(); });
   if (drawn == fault.areas.end()) return std::nullopt;
   Point2 sum;
   for (const Point2& p : *drawn) sum = {sum.x_m + p.x_m, sum.y_m + p.y_m};

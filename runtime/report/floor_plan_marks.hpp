@@ -10,7 +10,7 @@
 // What a floor plan shows besides zones and routes: the occupancy grid below, and what is wrong.
 namespace zonepack::report {
 
-inline constexpr Color kUnseen{0xd5, 0xd8, 0xdc};    // where the grid saw nothing
+inline constexpr Color kUnseen{0xd5, 0xd8, 0xdc};  // where the grid saw nothing
 inline constexpr double kUnseenOpacity = 0.6;
 inline constexpr Color kOccupied{0x2b, 0x2f, 0x36};  // walls and furniture
 

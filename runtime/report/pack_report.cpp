@@ -77,9 +77,8 @@ Table table_of(const PackReport& map) {
                           format_count(zone.stored_bytes),
                           zone.signatures == 0 ? "" : format_bytes(each)});
   }
-  std::ranges::stable_sort(table.rows, [](const auto& a, const auto& b) {
-    return natural_less(a.front(), b.front());
-  });
+  std::ranges::stable_sort(
+      table.rows, [](const auto& a, const auto& b) { return natural_less(a.front(), b.front()); });
   return table;
 }
 

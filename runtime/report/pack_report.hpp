@@ -32,7 +32,7 @@ struct PackReport {
   std::vector<PackedZone> zones;
   std::vector<Segment2> portals;
   std::optional<PlanRaster> ground;  // the occupancy grid, when it is known
-  ByteCount table_bytes = 0;  // tables and read buffers, with every zone loaded
+  ByteCount table_bytes = 0;         // tables and read buffers, with every zone loaded
   ByteCount smallest_budget_bytes = 0;
   std::string smallest_budget_pair;  // "C3 with H1"
 };

@@ -122,13 +122,16 @@ void Svg::image(Px corner, double width, double height, bool turned, std::string
   body_ += "<image";
   if (turned) {
     const std::string right = number(corner.x + height), down = number(corner.y);
-    body_.append(" transform=\"matrix(0 1 -1 0 ").append(right).append(" ").append(down).append(")\"");
+    body_.append(" transform=\"matrix(0 1 -1 0 ")
+        .append(right)
+        .append(" ")
+        .append(down)
+        .append(")\"");
     corner = {0, 0};
   }
   body_ += attribute("x", corner.x) + attribute("y", corner.y) + attribute("width", width) +
            attribute("height", height) + attribute("preserveAspectRatio", "none") +
-           attribute("pointer-events", "none") +
-           " href=\"data:image/png;base64,";
+           attribute("pointer-events", "none") + " href=\"data:image/png;base64,";
   append_base64(std::as_bytes(std::span(png)), body_);
   body_ += "\"/>\n";
 }

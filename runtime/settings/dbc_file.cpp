@@ -9,8 +9,8 @@
 #include <memory>
 #include <utility>
 
-#include "runtime/settings/dbc_parser.hpp"
 #include "platform/base/nearest_word.hpp"
+#include "runtime/settings/dbc_parser.hpp"
 
 namespace zonepack {
 namespace {

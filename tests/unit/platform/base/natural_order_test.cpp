@@ -31,10 +31,10 @@ TEST(NaturalOrder, TakesNumbersOfAnyLength) {
 }
 
 TEST(NaturalOrder, ComparesTheRestByBytes) {
-  EXPECT_TRUE(natural_less("B", "a"));           // 0x42 < 0x61
-  EXPECT_TRUE(natural_less("z", "\xC3\xA9"));    // 0x7a < 0xc3
+  EXPECT_TRUE(natural_less("B", "a"));         // 0x42 < 0x61
+  EXPECT_TRUE(natural_less("z", "\xC3\xA9"));  // 0x7a < 0xc3
   EXPECT_TRUE(natural_less("room", "room1"));
-  EXPECT_TRUE(natural_less("1room", "room"));    // 0x31 < 0x72
+  EXPECT_TRUE(natural_less("1room", "room"));  // 0x31 < 0x72
 }
 
 }  // namespace
