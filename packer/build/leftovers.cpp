@@ -22,7 +22,8 @@ namespace {
 std::set<std::string> named_packs(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (std::filesystem::is_regular_file(folder, ignored)) {
-    throw std::runtime_error(folder.string() + ": is a file; expected the folder of a map");
+    throw std::runtime_error(
+        folder.string() + ": is a file; expected the folder of a map that 'zonepack build' wrote");
   }
   const std::string path = (folder / kManifestName).string();
   const Result<std::vector<std::byte>> file = read_file(path, kMaxManifestFileBytes);

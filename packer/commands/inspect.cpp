@@ -10,6 +10,7 @@
 #include "packer/console/command_line.hpp"
 #include "packer/inspect/map_inspection.hpp"
 #include "packer/inspect/pack_inspection.hpp"
+#include "runtime/pack_format/file/manifest_file.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -22,6 +23,10 @@ struct InspectArguments {
 nlohmann::ordered_json inspect(const std::string& path, std::ostream& text) {
   std::error_code ignored;
   const bool is_file = std::filesystem::is_regular_file(path, ignored);
+  const std::filesystem::path file(path);
+  if (is_file && file.filename() == kManifestName) {
+    return inspect_map(file.has_parent_path() ? file.parent_path().string() : ".", text);
+  }
   return is_file ? inspect_pack(path, text) : inspect_map(path, text);
 }
 

@@ -24,7 +24,8 @@ std::string mib_text(ByteCount bytes) {
 }
 
 std::string size_text(ByteCount bytes) {
-  return plural(bytes, "byte") + " (" + mib_text(bytes) + " MiB)";
+  const std::string text = plural(bytes, "byte");
+  return bytes < kMiB / 100 ? text : text + " (" + mib_text(bytes) + " MiB)";
 }
 
 std::string shell_word(const std::string& path) {

@@ -17,7 +17,7 @@ std::string plural(std::uint64_t count, const std::string& one, const std::strin
 // For columns and sentences: "0.17", in MiB, two decimals; what is smaller but not 0 as "0.01".
 std::string mib_text(ByteCount bytes);
 
-// "180224 bytes (0.17 MiB)".
+// "180224 bytes (0.17 MiB)"; below 0.01 MiB the bytes alone.
 std::string size_text(ByteCount bytes);
 
 // A path for a command to type: quoted only where a shell needs it.

@@ -55,7 +55,8 @@ void MapReader::fail(const std::string& path, const Error& error) {
       break;
     default:
       text += std::string(to_string(error.code)) + " (" + std::to_string(error.detail) +
-              "); 'zonepack verify' reports what is damaged, 'zonepack build' makes the map again";
+              "); to see what is damaged: zonepack verify " + shell_quoted(path) +
+              "; 'zonepack build' makes the map again";
   }
   throw std::runtime_error(text);
 }
@@ -86,8 +87,10 @@ std::vector<ZoneId> MapReader::zones_named(const std::string& name) const {
   if (!named.empty()) return named;
   known.insert(known.end(), parents.begin(), parents.end());
   std::ranges::sort(known, natural_less);
-  throw std::runtime_error(folder_.string() + ": no zone '" + name + "' in this map" +
-                           known_words_text(name, known));
+  const std::string* const nearest = nearest_word(name, known);
+  throw std::runtime_error(folder_.string() + ": no zone '" + name + "' in this map; it has " +
+                           listed(known) +
+                           (nearest != nullptr ? "; did you mean '" + *nearest + "'?" : ""));
 }
 
 std::string MapReader::pack_path(const fb::Zone& zone) const {

@@ -106,7 +106,8 @@ nlohmann::ordered_json inspect_pack(const std::string& path, std::ostream& out) 
     const std::string kind = misplaced_map_file(path);
     if (!kind.empty()) throw std::runtime_error(path + ": " + kind);
     throw std::runtime_error(path + ": " + reason_text(pack.error()) +
-                             "; 'zonepack verify' reports where the pack is damaged");
+                             "; to see where the pack is damaged: zonepack verify " +
+                             shell_word(path));
   }
   const fb::PackIndex& index = pack->index();
   Json json;

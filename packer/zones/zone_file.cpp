@@ -30,7 +30,8 @@ std::string read_text(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) {
-    throw std::runtime_error(path + ": no such file; expected GeoJSON with the zones");
+    throw std::runtime_error(path + ": cannot read the zone file: " + std::strerror(ENOENT) +
+                             "; expected GeoJSON");
   }
   if (fs::is_directory(status)) {
     throw std::runtime_error(path + ": is a folder, expected a GeoJSON file with the zones");
@@ -55,10 +56,10 @@ std::string read_text(const std::string& path) {
                              "; expected GeoJSON");
   }
   std::string bytes = std::move(text).str();
-  if (const std::string kind = stand_in(bytes); !kind.empty()) {
+  if (const std::string kind = stand_in(bytes, path); !kind.empty()) {
     throw std::runtime_error(path + ": is " + kind + "; expected GeoJSON");
   }
-  if (const std::string kind = known_kind(bytes); !kind.empty()) {
+  if (const std::string kind = known_kind(bytes, path); !kind.empty()) {
     throw std::runtime_error(path + ": is " + kind + ", not a zone file; expected GeoJSON");
   }
   return bytes;

@@ -23,24 +23,34 @@ std::size_t edits(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string known_words_text(std::string_view word, const std::vector<std::string>& known) {
+const std::string* nearest_word(std::string_view word, const std::vector<std::string>& known) {
   const std::string* nearest = nullptr;
   const std::size_t most = word.size() / 3 + 1;
   std::size_t least = most + 1;
-  std::string all;
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    if (i < kMostShown) all += (i == 0 ? "" : ", ") + known[i];
-    if (i == kMostShown) all += " ...";
-    const std::size_t size = known[i].size();
+  for (const std::string& candidate : known) {
+    const std::size_t size = candidate.size();
     if (word.empty() || size > word.size() + most || word.size() > size + most) continue;
-    if (const std::size_t distance = edits(word, known[i]); distance < least) {
+    if (const std::size_t distance = edits(word, candidate); distance < least) {
       least = distance;
-      nearest = &known[i];
+      nearest = &candidate;
     }
   }
-  if (all.empty()) all = "none";
-  return nearest != nullptr ? "; did you mean \"" + *nearest + "\"? Known: " + all
-                            : "; known: " + all;
+  return nearest;
+}
+
+std::string listed(const std::vector<std::string>& known) {
+  std::string all;
+  for (std::size_t i = 0; i < known.size() && i < kMostShown; ++i) {
+    all += (i == 0 ? "" : ", ") + known[i];
+  }
+  if (known.size() > kMostShown) all += " ...";
+  return all.empty() ? "none" : all;
+}
+
+std::string known_words_text(std::string_view word, const std::vector<std::string>& known) {
+  const std::string* const nearest = nearest_word(word, known);
+  return nearest != nullptr ? "; did you mean \"" + *nearest + "\"? Known: " + listed(known)
+                            : "; known: " + listed(known);
 }
 
 }  // namespace zonepack

@@ -12,6 +12,11 @@ namespace {
 
 std::string bytes_text(ByteCount bytes) { return format_bytes(static_cast<double>(bytes)); }
 
+// For columns, of which all cells have one unit.
+std::string mib_text(ByteCount bytes) {
+  return format_fixed(static_cast<double>(bytes) / static_cast<double>(kMiB), 2);
+}
+
 template <typename Member>
 ByteCount sum_of(const PackReport& map, Member member) {
   ByteCount sum = 0;
@@ -63,19 +68,18 @@ Table table_of(const PackReport& map) {
                {"m\xC2\xB2", true},
                {"Signatures", true},
                {"Features", true},
-               {"Charged", true},
-               {"Stored", true},
+               {"Charged MiB", true},
+               {"Stored MiB", true},
                {"Charged / signature", true}},
               {}};
   for (const PackedZone& zone : map.zones) {
     const double each = zone.signatures == 0 ? 0
                                              : static_cast<double>(zone.charged_bytes) /
                                                    static_cast<double>(zone.signatures);
-    table.rows.push_back({zone.name, zone.zone_type, zone.label,
-                          format_fixed(area_m2(zone.polygon), 1), format_count(zone.signatures),
-                          format_count(zone.features), format_count(zone.charged_bytes),
-                          format_count(zone.stored_bytes),
-                          zone.signatures == 0 ? "" : format_bytes(each)});
+    table.rows.push_back(
+        {zone.name, zone.zone_type, zone.label, format_fixed(area_m2(zone.polygon), 1),
+         format_count(zone.signatures), format_count(zone.features), mib_text(zone.charged_bytes),
+         mib_text(zone.stored_bytes), zone.signatures == 0 ? "" : format_bytes(each)});
   }
   std::ranges::stable_sort(
       table.rows, [](const auto& a, const auto& b) { return natural_less(a.front(), b.front()); });
