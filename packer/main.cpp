@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
   app.set_version_flag(
       "--version", zonepack::version_line(
                        "zonepack", {{"pack format", zonepack::kPackMajor, zonepack::kPackMinor}}));
+  app.fallthrough();             // --version, after a subcommand as well
   app.require_subcommand(0, 1);  // so that CLI11 names a word it does not know
   app.callback([&app] {
     if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
@@ -43,6 +44,10 @@ int main(int argc, char** argv) {
   zonepack::packer::add_verify_command(app, exit_code);
   zonepack::packer::add_prune_command(app, exit_code);
   zonepack::packer::add_report_command(app, exit_code);
+  zonepack::add_examples(app, {"zonepack outline --db map.db --out outline",
+                               "zonepack check-zones zones.geojson --db map.db --out preview.html",
+                               "zonepack build --db map.db --zones zones.geojson --out map",
+                               "zonepack plan map --budget 8MiB"});
   try {
     zonepack::parse_command_line(app, argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -59,7 +59,8 @@ void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
 }
 
 void add_examples(CLI::App& app, std::initializer_list<std::string_view> commands) {
-  std::string text = "Examples:";
+  std::string text = app.get_footer();
+  text += text.empty() ? "Examples:" : "\n\nExamples:";
   for (const std::string_view command : commands) {
     text += "\n  ";
     for (const char c : command) {

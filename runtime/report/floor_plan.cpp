@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "runtime/report/chart.hpp"
+#include "runtime/report/floor_plan_marks.hpp"
 #include "runtime/report/format.hpp"
 #include "runtime/report/legend.hpp"
 #include "runtime/report/plan_label.hpp"
@@ -20,7 +21,9 @@ namespace {
 
 constexpr double kPlanLeft = 40, kPlanRight = 14, kPlanAxisBelow = 40, kMostHeight = 760;
 constexpr double kMargin_m = 0.4;
-constexpr double kArrowEvery = 110;  // pixels of route
+constexpr double kRasterShown_m = 2;          // how far a grid beyond zones and signatures is shown
+constexpr double kArrowEvery = 110;           // pixels of route
+constexpr Color kZoneLine{0x3a, 0x5f, 0x8a};  // not to be taken for a wall
 constexpr Style kRouteHalo{.stroke = kWhite, .stroke_width = 5.5, .opacity = 0.8, .round = true};
 
 bool is_finite(Point2 p) noexcept { return std::isfinite(p.x_m) && std::isfinite(p.y_m); }
@@ -37,10 +40,27 @@ Box2 area_of(const FloorPlan& plan) noexcept {
   };
   for (const PlanZone& zone : plan.zones) std::ranges::for_each(zone.polygon.outer, add);
   std::ranges::for_each(plan.signatures, add);
+  for (const PlanOrphan& orphan : plan.orphans) add(orphan.p_map);
+  for (const PlanFault& fault : plan.faults) {
+    for (const Ring& ring : fault.areas) std::ranges::for_each(ring, add);
+    for (const Segment2& line : fault.lines) {
+      add(line.p);
+      add(line.q);
+    }
+  }
   if (!(box.min.x_m <= box.max.x_m)) {
     for (const PlanRoutePoint& point : plan.route) add(point.p_map);
   }
+  if (!(box.min.x_m <= box.max.x_m) && plan.raster) box = plan.raster->area;
   if (!(box.min.x_m <= box.max.x_m)) return {{0, 0}, {10, 5}};
+  if (plan.raster) {
+    // A laser sees far out of windows; only what is near counts.
+    const Box2& grid = plan.raster->area;
+    box.min.x_m = std::min(box.min.x_m, std::max(grid.min.x_m, box.min.x_m - kRasterShown_m));
+    box.min.y_m = std::min(box.min.y_m, std::max(grid.min.y_m, box.min.y_m - kRasterShown_m));
+    box.max.x_m = std::max(box.max.x_m, std::min(grid.max.x_m, box.max.x_m + kRasterShown_m));
+    box.max.y_m = std::max(box.max.y_m, std::min(grid.max.y_m, box.max.y_m + kRasterShown_m));
+  }
   return {{box.min.x_m - kMargin_m, box.min.y_m - kMargin_m},
           {box.max.x_m + kMargin_m, box.max.y_m + kMargin_m}};
 }
@@ -54,6 +74,7 @@ std::vector<LegendItem> legend_of(const FloorPlan& plan) {
   if (!plan.true_route.empty()) items.push_back({Mark::kDashedLine, kInk, "true route"});
   if (!plan.portals.empty()) items.push_back({Mark::kThickLine, kDoor, "portal"});
   if (!plan.signatures.empty()) items.push_back({Mark::kDot, kQuiet, "signature"});
+  add_mark_legend(plan, items);
   return items;
 }
 
@@ -261,6 +282,13 @@ Svg draw_floor_plan(const FloorPlan& plan) {
         view(zone.polygon),
         {.fill = zone.fill, .stroke = kWall, .stroke_width = 1.25, .hint = zone.hint, .zone = i});
   }
+  if (plan.raster) {
+    draw_raster(svg, plan, view);
+    for (const PlanZone& zone : plan.zones) {
+      svg.polygon(view(zone.polygon),
+                  {.stroke = kZoneLine, .stroke_width = 1.25, .hint = zone.hint});
+    }
+  }
   const double radius = plan.signatures.size() > 400 ? 1.2 : 1.9;
   for (const Point2& p : plan.signatures) {
     svg.circle(view(p), radius, {.fill = kInk, .opacity = 0.5});
@@ -271,6 +299,9 @@ Svg draw_floor_plan(const FloorPlan& plan) {
   draw_routes(svg, plan, view);
   svg.close();
   draw_labels(svg, plan, view);
+  svg.open_clip(view.corner(), view.width(), view.height());
+  draw_marks(svg, plan, view);
+  svg.close();
   svg.set_data("plan", transform_of(view));
   return svg;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "platform/base/base64.hpp"
 #include "platform/base/require.hpp"
 #include "runtime/report/format.hpp"
 
@@ -123,6 +124,25 @@ void Svg::text(Px baseline, std::string_view text, const TextStyle& style) {
   }
   if (style.opacity < 1) body_ += attribute("opacity", style.opacity);
   body_.append(">").append(escape_xml(text)).append("</text>\n");
+}
+
+void Svg::image(Px corner, double width, double height, bool turned, std::string_view png) {
+  if (!is_finite(corner)) return;
+  body_ += "<image";
+  if (turned) {
+    const std::string right = number(corner.x + height), down = number(corner.y);
+    body_.append(" transform=\"matrix(0 1 -1 0 ")
+        .append(right)
+        .append(" ")
+        .append(down)
+        .append(")\"");
+    corner = {0, 0};
+  }
+  body_ += attribute("x", corner.x) + attribute("y", corner.y) + attribute("width", width) +
+           attribute("height", height) + attribute("preserveAspectRatio", "none") +
+           attribute("pointer-events", "none") + " href=\"data:image/png;base64,";
+  append_base64(std::as_bytes(std::span(png)), body_);
+  body_ += "\"/>\n";
 }
 
 void Svg::open_clip(Px corner, double width, double height) {

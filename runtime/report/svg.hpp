@@ -59,6 +59,10 @@ class Svg {
   void rect(Px corner, double width, double height, const Style& style, double radius = 0);
   void circle(Px center, double radius, const Style& style);
   void text(Px baseline, std::string_view text, const TextStyle& style);
+  // A PNG file, held inside the drawing and stretched over the box that begins at `corner`. Turned:
+  // its own right points down the page and its own up to the right, and `width` and `height` are
+  // those of the picture before the turn.
+  void image(Px corner, double width, double height, bool turned, std::string_view png);
 
   // Until close(), clips everything to the box; coordinates stay those of the drawing.
   void open_clip(Px corner, double width, double height);

@@ -66,11 +66,12 @@ ARROWS = {
     "packer/verify": "packer/decode packer/record packer/zones platform platform/base runtime/pack_format"
                      " runtime/pack_format/file",
     "packer/export": "packer/decode packer/record platform/base runtime/pack_format",
+    "packer/preview": "packer/console packer/decode packer/outline packer/zones platform/base runtime/report",
     "packer/console": "platform platform/base runtime/pack_format",
     "packer/inspect": "packer/console packer/decode packer/verify platform/base runtime/pack_format/file",
     "packer/commands": "packer/build packer/console packer/decode packer/export packer/inspect packer/outline"
-                       " packer/sources packer/verify packer/zones platform platform/base runtime/pack_format"
-                       " runtime/pack_format/file runtime/report",
+                       " packer/preview packer/sources packer/verify packer/zones platform platform/base"
+                       " platform/command_line runtime/pack_format runtime/pack_format/file runtime/report",
     "packer": "platform/command_line platform/signals.hpp packer/commands platform/version runtime/pack_format/file",
 }
 
@@ -87,7 +88,7 @@ FOREIGN = {
     r"Eigen/": "runtime/calibrate",
     r"CLI/": "platform/command_line runtime/zoned runtime/ctl packer packer/commands packer/console",
     r"sqlite3\.h": "packer/sources",
-    r"zlib\.h": "packer/sources",
+    r"zlib\.h": "packer/sources packer/preview",
     r"nlohmann/": "packer/commands packer/console packer/inspect packer/outline packer/verify packer/zones",
     r"opencv": "",
 }
