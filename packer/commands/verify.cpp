@@ -35,6 +35,7 @@ nlohmann::ordered_json to_json(const Verdict& verdict, const std::string& path) 
   json["packs"] = verdict.packs;
   json["signatures"] = verdict.signatures;
   json["bytes"] = verdict.bytes;
+  json["problem_count"] = verdict.problem_count();
   json["problems"] = nlohmann::ordered_json::array();
   for (const Problem& problem : verdict.problems) json["problems"].push_back(to_json(problem));
   json["unnamed_files"] = verdict.unnamed;
@@ -51,8 +52,8 @@ void print(const Verdict& verdict, const std::string& path, std::ostream& out) {
   if (verdict.whole()) {
     out << "whole";
   } else {
-    out << "DAMAGED: " << verdict.problems.size()
-        << (verdict.problems.size() == 1 ? " problem" : " problems");
+    const std::uint64_t count = verdict.problem_count();
+    out << "DAMAGED: " << count << (count == 1 ? " problem" : " problems");
   }
   out << "; " << verdict.packs << (verdict.packs == 1 ? " pack, " : " packs, ")
       << verdict.signatures << " signatures, " << verdict.bytes << " bytes checked\n";

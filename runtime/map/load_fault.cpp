@@ -40,6 +40,7 @@ std::string what_was_found(Error error) {
     case ErrorCode::kTruncated:
       return "truncated: the file ends at byte " + detail;
     case ErrorCode::kTooLarge:
+      if (const auto excess = excess_of(error)) return to_string(*excess);
       return "its index takes " + detail +
              " bytes, more than the chunks that the manifest counts in it";
     case ErrorCode::kMismatch:
