@@ -106,9 +106,13 @@ class MapVerifier {
     const ErrorCode code = checked.error().code;
     const bool whole = code != ErrorCode::kTruncated && code != ErrorCode::kBadMagic &&
                        code != ErrorCode::kBadChecksum && code != ErrorCode::kBadVersion;
-    const bool in_zone = fault.part == ManifestFault::Part::kZone;
-    report({.file = kManifest, .zone = in_zone ? std::string(fault.name) : std::string()},
-           manifest_fault_text(checked.error(), fault), whole ? kBuildAgain : kCopyAgain);
+    Location place{.file = kManifest};
+    if (fault.part == ManifestFault::Part::kZone && !fault.name.empty()) {
+      place.zone = fault.name;
+      fault.part = ManifestFault::Part::kWhole;  // named by its place
+    }
+    report(std::move(place), manifest_fault_text(checked.error(), fault),
+           whole ? kBuildAgain : kCopyAgain);
     return nullptr;
   }
 

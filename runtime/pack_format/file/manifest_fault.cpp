@@ -47,7 +47,7 @@ std::string manifest_fault_text(const Error& error, const ManifestFault& fault) 
       break;
   }
   const std::string field = fault.field;
-  return place_text(fault) + (field.empty() ? "" : field + ": ") +
+  return place_text(fault) + (field.empty() ? "" : field + " ") +
          (*fault.expected == '\0' ? to_string(error.code) : fault.expected);
 }
 

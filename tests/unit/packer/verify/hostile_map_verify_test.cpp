@@ -71,11 +71,11 @@ TEST(HostileMapVerify, NamesBytesBehindAnIndexOfAPack) {
 
 TEST(HostileMapVerify, NamesTheTextThatHoldsAControlCharacter) {
   EXPECT_THAT(lines_of(verdict_on("escape-frame")),
-              testing::ElementsAre(HasSubstr("frame: is not UTF-8 without control characters")));
+              testing::ElementsAre(HasSubstr("frame is not UTF-8 without control characters")));
   EXPECT_THAT(lines_of(verdict_on("escape-detector")),
-              testing::ElementsAre(HasSubstr("provenance.detector: is not UTF-8 without control")));
+              testing::ElementsAre(HasSubstr("provenance.detector is not UTF-8 without control")));
   EXPECT_THAT(lines_of(verdict_on("escape")),
-              testing::ElementsAre(HasSubstr("zone entry 0: name: is not UTF-8 without control")));
+              testing::ElementsAre(HasSubstr("zone entry 0: name is not UTF-8 without control")));
 }
 
 // A million images of a byte each, none with the BLAKE2b of its byte: 20 lines, one line for the
