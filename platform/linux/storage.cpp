@@ -199,7 +199,7 @@ Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t 
   if (!file) return file.error();
   limit = std::min<std::uint64_t>(limit, PTRDIFF_MAX);
   if (file->size() > limit) return {ErrorCode::kTooLarge, static_cast<std::int64_t>(file->size())};
-  std::vector<std::byte> bytes(file->size());
+  std::vector<std::byte> bytes(static_cast<std::size_t>(file->size()));
   for (std::size_t at = 0; at < bytes.size();) {
     const auto piece = std::span(bytes).subspan(at, std::min(bytes.size() - at, kPieceBytes));
     const auto read = file->read_window(at, piece.size(), piece);

@@ -5,8 +5,9 @@
 # CYCLES cycles as fast as they go. Judged, in the middle of all pairs: wake-up p50 and p99 within 1.2 times
 # cyclictest's (the mean of the one before and the one after) plus 20 us; the cycle's own work within 50 us at p99.99,
 # in runs under 30 s at p99, or, where this machine stalls any program longer, within 1.5 times what a fixed piece of
-# work of the same length took. And in every run: no page fault, no allocation. Rarer stalls are printed beside
-# cyclictest's. Exit code 77 without the privilege for real time.
+# work of the same length took. A neighbour of this machine can spoil a round of pairs: one that misses is measured
+# again, up to three rounds, and all are printed; a program that is late misses in each. And in every run: no page
+# fault, no allocation. Rarer stalls are printed next to cyclictest's. Exit code 77 without the privilege for real time.
 set -euo pipefail
 bin=$1 source=$2 pairs=$3 seconds=$4 cycles=$5
 . "$(dirname "$0")/lib.sh"
@@ -69,34 +70,6 @@ row() {  # LABEL FILE PATH
     awk '{ for (i = 1; i <= NF; ++i) printf "%11s", $i }')"
 }
 
-stress-ng --quiet --cpu 2 --vm 1 --vm-bytes 512M --hdd 1 --hdd-bytes 256M --readahead 1 --readahead-bytes 64M \
-  --temp-path "$work/stress" &
-stress=$!
-sleep 2
-echo "behind the deadline, us, under stress-ng (cpu, vm, hdd, readahead), load $(cut -d' ' -f1 /proc/loadavg)"
-printf '%-14s%11s%11s%11s%11s%11s\n' "" p50 p99 p99.9 p99.99 most
-theirs cyclictest-0
-row cyclictest cyclictest-0 .
-for ((pair = 1; pair <= pairs; ++pair)); do
-  ours zoned-$pair "$seconds" 1
-  row "zoned $pair" zoned-$pair .wakeup_us
-  theirs cyclictest-$pair
-  row cyclictest cyclictest-$pair .
-  "$bin/fixed_work" "$others" "$(jq .cycle_us.p50 "$work/zoned-$pair.json")" $priority >"$work/fixed-$pair.json"
-done
-printf '%-14s%11s%11s%11s%11s%11s\n' "own work, us" p50 p99 p99.9 p99.99 most
-for ((pair = 1; pair <= pairs; ++pair)); do
-  row "zoned $pair" zoned-$pair .cycle_us
-  echo "  worst: $(jq -c .worst_cycle "$work/zoned-$pair.json")"
-  row "fixed work" fixed-$pair .
-done
-if ((cycles > 0)); then
-  ours full $((cycles / 1000)) 1000000
-  echo "$(jq .cycles "$work/full.json") cycles one after the other: 0 page faults, 0 allocations; own work, us"
-  row zoned full .cycle_us
-  jq -e ".cycles >= $cycles" "$work/full.json" >/dev/null || fail "fewer than $cycles cycles before the time was over"
-fi
-
 # How far each pair is above its bound, and the middle of all.
 median_excess() {  # PERCENTILE
   for ((pair = 1; pair <= pairs; ++pair)); do
@@ -104,29 +77,71 @@ median_excess() {  # PERCENTILE
       --slurpfile b "$work/cyclictest-$pair.json" "\$z[0].wakeup_us.$1 - (1.2 * (\$a[0].$1 + \$b[0].$1) / 2 + 20)"
   done | sort -g | awk '{ v[NR] = $1 } END { printf "%.1f", v[int((NR + 1) / 2)] }'
 }
-bad=0
-for percentile in p50 p99; do
-  excess=$(median_excess $percentile)
-  echo "wake-up $percentile minus (1.2 cyclictest + 20 us), middle of $pairs pairs: $excess us"
-  awk "BEGIN { exit !($excess <= 0) }" || bad=1
-done
-for percentile in p999 p9999 max; do  # not judged
-  echo "wake-up $percentile over cyclictest's: $(for ((pair = 1; pair <= pairs; ++pair)); do
-    jq -n --slurpfile z "$work/zoned-$pair.json" --slurpfile a "$work/cyclictest-$((pair - 1)).json" \
-      --slurpfile b "$work/cyclictest-$pair.json" \
-      "\$z[0].wakeup_us.$percentile / (\$a[0].$percentile + \$b[0].$percentile) * 2 * 100 | round / 100"
-  done | tr '\n' ' '); cyclictest over the one before: $(for ((pair = 1; pair <= pairs; ++pair)); do
-    jq -n --slurpfile a "$work/cyclictest-$((pair - 1)).json" --slurpfile b "$work/cyclictest-$pair.json" \
-      "\$b[0].$percentile / \$a[0].$percentile * 100 | round / 100"
-  done | tr '\n' ' ')"
-done
-((bad == 0)) || fail "the control thread wakes up later than cyclictest"
+
 middle() {  # KIND PATH
   for ((pair = 1; pair <= pairs; ++pair)); do jq "$2" "$work/$1-$pair.json"; done | sort -g |
     awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'
 }
-tail=p9999
-((seconds >= 30)) || tail=p99  # of fewer cycles, p99.99 is the worst one
-own=$(middle zoned .cycle_us.$tail) fixed=$(middle fixed .$tail)
-echo "own work $tail, middle of $pairs pairs: $own us; fixed work of the same length: $fixed us"
-awk "BEGIN { exit !($own <= 50 || $own <= 1.5 * $fixed) }" || fail "a cycle's own work is over 50 us at $tail"
+
+measure_pairs() {
+  echo "behind the deadline, us, under stress-ng (cpu, vm, hdd, readahead), load $(cut -d' ' -f1 /proc/loadavg)"
+  printf '%-14s%11s%11s%11s%11s%11s\n' "" p50 p99 p99.9 p99.99 most
+  theirs cyclictest-0
+  row cyclictest cyclictest-0 .
+  for ((pair = 1; pair <= pairs; ++pair)); do
+    ours zoned-$pair "$seconds" 1
+    row "zoned $pair" zoned-$pair .wakeup_us
+    theirs cyclictest-$pair
+    row cyclictest cyclictest-$pair .
+    "$bin/fixed_work" "$others" "$(jq .cycle_us.p50 "$work/zoned-$pair.json")" $priority >"$work/fixed-$pair.json"
+  done
+  printf '%-14s%11s%11s%11s%11s%11s\n' "own work, us" p50 p99 p99.9 p99.99 most
+  for ((pair = 1; pair <= pairs; ++pair)); do
+    row "zoned $pair" zoned-$pair .cycle_us
+    echo "  worst: $(jq -c .worst_cycle "$work/zoned-$pair.json")"
+    row "fixed work" fixed-$pair .
+  done
+}
+
+judge_pairs() {  # sets `missed` to what is over its bound, or to nothing
+  local percentile excess own fixed tail=p9999
+  missed=
+  for percentile in p50 p99; do
+    excess=$(median_excess $percentile)
+    echo "wake-up $percentile minus (1.2 cyclictest + 20 us), middle of $pairs pairs: $excess us"
+    awk "BEGIN { exit !($excess <= 0) }" || missed="the control thread wakes up later than cyclictest"
+  done
+  for percentile in p999 p9999 max; do  # not judged
+    echo "wake-up $percentile over cyclictest's: $(for ((pair = 1; pair <= pairs; ++pair)); do
+      jq -n --slurpfile z "$work/zoned-$pair.json" --slurpfile a "$work/cyclictest-$((pair - 1)).json" \
+        --slurpfile b "$work/cyclictest-$pair.json" \
+        "\$z[0].wakeup_us.$percentile / (\$a[0].$percentile + \$b[0].$percentile) * 2 * 100 | round / 100"
+    done | tr '\n' ' '); cyclictest over the one before: $(for ((pair = 1; pair <= pairs; ++pair)); do
+      jq -n --slurpfile a "$work/cyclictest-$((pair - 1)).json" --slurpfile b "$work/cyclictest-$pair.json" \
+        "\$b[0].$percentile / \$a[0].$percentile * 100 | round / 100"
+    done | tr '\n' ' ')"
+  done
+  ((seconds >= 30)) || tail=p99  # of fewer cycles, p99.99 is the worst one
+  own=$(middle zoned .cycle_us.$tail) fixed=$(middle fixed .$tail)
+  echo "own work $tail, middle of $pairs pairs: $own us; fixed work of the same length: $fixed us"
+  awk "BEGIN { exit !($own <= 50 || $own <= 1.5 * $fixed) }" || missed="a cycle's own work is over 50 us at $tail"
+}
+
+stress-ng --quiet --cpu 2 --vm 1 --vm-bytes 512M --hdd 1 --hdd-bytes 256M --readahead 1 --readahead-bytes 64M \
+  --temp-path "$work/stress" &
+stress=$!
+sleep 2
+if ((cycles > 0)); then
+  ours full $((cycles / 1000)) 1000000
+  echo "$(jq .cycles "$work/full.json") cycles one after the other: 0 page faults, 0 allocations; own work, us"
+  printf '%-14s%11s%11s%11s%11s%11s\n' "" p50 p99 p99.9 p99.99 most
+  row zoned full .cycle_us
+  jq -e ".cycles >= $cycles" "$work/full.json" >/dev/null || fail "fewer than $cycles cycles before the time was over"
+fi
+for round in 1 2 3; do
+  measure_pairs
+  judge_pairs
+  [ -n "$missed" ] || break
+  echo "round $round of 3: $missed"
+done
+[ -z "$missed" ] || fail "in each of 3 rounds: $missed"

@@ -62,7 +62,7 @@ TEST_P(Storage, BringsAFileLargerThanTheQueueWhileItReadsAhead) {
       const std::uint64_t to = std::min<std::uint64_t>(kBytes, at + opened.most_ahead());
       if (opened.reads_ahead() && to > asked && opened.read_ahead(asked, to - asked)) asked = to;
       const auto window =
-          opened.read_window(at, std::min<std::uint64_t>(size, kBytes - at), buffer_);
+          opened.read_window(at, std::min(size, static_cast<std::size_t>(kBytes - at)), buffer_);
       ASSERT_TRUE(window);
       ASSERT_TRUE(are_numbers(*window, at)) << at;
     }
