@@ -43,6 +43,7 @@ nlohmann::ordered_json to_json(const Verdict& verdict, const std::string& path) 
   json["packs"] = verdict.packs;
   json["signatures"] = verdict.signatures;
   json["bytes"] = verdict.bytes;
+  json["problem_count"] = verdict.problem_count();
   json["problems"] = nlohmann::ordered_json::array();
   for (const Problem& problem : verdict.problems) json["problems"].push_back(to_json(problem));
   json["unnamed_files"] = verdict.unnamed;
@@ -74,7 +75,7 @@ void print(const Verdict& verdict, const std::string& path, std::ostream& out) {
   if (verdict.whole()) {
     out << "whole";
   } else {
-    out << "DAMAGED: " << plural(verdict.problems.size(), "problem");
+    out << "DAMAGED: " << plural(verdict.problem_count(), "problem");
   }
   out << "; " << plural(verdict.packs, "pack") << ", " << plural(verdict.signatures, "signature")
       << ", " << size_text(verdict.bytes) << " checked\n";
