@@ -8,11 +8,11 @@
 namespace zonepack::report {
 namespace {
 
-constexpr double kPerSecond = 1000;
+constexpr double kMsPerSecond = 1000;
 constexpr double kPerUnit = 1000;         // of a value with a unit, such as metres
 constexpr double kLineTolerance = 0.001;  // of such a value
 
-std::vector<Sample> thinned(const ChartSeries& series) {
+std::vector<Sample> fewer_of(const ChartSeries& series) {
   if (series.steps) return changes_of(series.samples, kMostSeriesPoints);
   std::vector<Waypoint> points;
   points.reserve(series.samples.size());
@@ -27,7 +27,7 @@ std::vector<Sample> thinned(const ChartSeries& series) {
 std::string series_json(const Chart& chart, const ChartSeries& series) {
   const double per_unit = chart.unit.empty() ? 1 : kPerUnit;
   std::vector<double> times, values;
-  for (const Sample& sample : thinned(series)) {
+  for (const Sample& sample : fewer_of(series)) {
     times.push_back(std::isfinite(sample.t_s) ? sample.t_s : 0);
     values.push_back(sample.value);
   }
@@ -35,7 +35,7 @@ std::string series_json(const Chart& chart, const ChartSeries& series) {
          ",\"color\":" + script_string(to_hex(series.color)) +
          ",\"steps\":" + (series.steps ? "true" : "false") +
          ",\"per\":" + std::to_string(static_cast<int>(per_unit)) +
-         ",\"t\":" + script_differences(times, kPerSecond) +
+         ",\"t\":" + script_differences(times, kMsPerSecond) +
          ",\"v\":" + script_differences(values, per_unit) + "}";
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPerSecond = 1000, kPerMetre = 1000, kPerRadian = 100;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array<double, 3> kTolerance = {0.01, 0.01, 0.02};  // m, m, rad
+constexpr std::array<double, 3> kPoseTolerance = {0.01, 0.01, 0.02};  // m, m, rad
 
 std::int64_t milliseconds(double t_s) noexcept {
   return std::isfinite(t_s) ? std::llround(std::clamp(t_s, 0.0, 9e12) * kPerSecond) : 0;
@@ -42,7 +42,7 @@ std::vector<Waypoint> waypoints_of(const std::vector<PlayPose>& poses) {
 std::string track_json(const std::vector<PlayPose>& poses) {
   const std::vector<Waypoint> points = waypoints_of(poses);
   std::vector<double> t, x, y, yaw;
-  for (const std::size_t i : corners_of(points, kTolerance, kMostPoses)) {
+  for (const std::size_t i : corners_of(points, kPoseTolerance, kMostPoses)) {
     t.push_back(points[i].t_s);
     x.push_back(points[i].value[0]);
     y.push_back(points[i].value[1]);
