@@ -72,8 +72,10 @@ std::string short_bytes(ByteCount bytes) {
   const double kib = static_cast<double>(bytes) / static_cast<double>(kKiB);
   if (kib < 1023.5) {
     std::snprintf(text, sizeof text, "%.0f KiB", kib);
-  } else {
+  } else if (kib < 1023.995 * 1024) {
     std::snprintf(text, sizeof text, "%.2f MiB", kib / 1024);
+  } else {
+    std::snprintf(text, sizeof text, "%.2f GiB", kib / (1024 * 1024));
   }
   return text;
 }

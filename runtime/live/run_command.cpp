@@ -6,6 +6,7 @@
 #include <iostream>
 #include <utility>
 
+#include "platform/base/counted.hpp"
 #include "platform/clock.hpp"
 #include "platform/realtime.hpp"
 #include "platform/signals.hpp"
@@ -93,10 +94,10 @@ Outcome<void> drive(const RunArguments& arguments, RunInputs& inputs,
   const MapModel& model = (*map)->model();
   if (model.warning) warn(*model.warning);
   if (!terms.budget) {
-    std::cerr << kProgram
-              << ": memory.budget is not set: " << format_byte_count(model.limits.budget)
+    std::cerr << kProgram << ": memory.budget is not set: " << short_bytes(model.limits.budget)
+              << " (" << counted(model.limits.budget, "byte") << ")"
               << (terms.max_signatures > 0 ? ", for the whole map" : ", the smallest for this map")
-              << "; up to " << format_byte_count(terms.default_most)
+              << "; up to " << short_bytes(terms.default_most)
               << ", a quarter of the memory here, would be taken\n";
   }
   if (const auto claims = check_claims((*map)->catalog(), !terms.budget, ReadMode::kBuffered);

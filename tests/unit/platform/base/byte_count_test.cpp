@@ -71,6 +71,8 @@ TEST(ByteCount, RoundsForTables) {
   EXPECT_EQ(short_bytes(20'480), "20 KiB");
   EXPECT_EQ(short_bytes(1'048'575), "1.00 MiB");  // never "1024 KiB"
   EXPECT_EQ(short_bytes(1'572'864), "1.50 MiB");
+  EXPECT_EQ(short_bytes(1'073'741'823), "1.00 GiB");  // never "1024.00 MiB"
+  EXPECT_EQ(short_bytes(6'319'125'504), "5.89 GiB");  // 5.885...
 }
 
 }  // namespace
