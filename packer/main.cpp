@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // zonepack: the workstation's tool. Wiring only; each subcommand lives in packer/commands.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <exception>
 #include <iostream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "packer/commands/build.hpp"
 #include "packer/commands/check_zones.hpp"
@@ -17,7 +13,7 @@
 #include "packer/commands/prune.hpp"
 #include "packer/commands/report.hpp"
 #include "packer/commands/verify.hpp"
-#include "packer/console/command_line.hpp"
+#include "platform/command_line/command_line.hpp"
 #include "platform/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/pack_format/file/pack_file.hpp"
@@ -48,16 +44,12 @@ int main(int argc, char** argv) {
   zonepack::packer::add_verify_command(app, exit_code);
   zonepack::packer::add_prune_command(app, exit_code);
   zonepack::packer::add_report_command(app, exit_code);
-  zonepack::packer::add_examples(
-      app, {"zonepack outline --db map.db --out outline",
-            "zonepack check-zones zones.geojson --db map.db --out preview.html",
-            "zonepack build --db map.db --zones zones.geojson --out map",
-            "zonepack plan map --budget 8MiB"});
+  zonepack::add_examples(app, {"zonepack outline --db map.db --out outline",
+                               "zonepack check-zones zones.geojson --db map.db --out preview.html",
+                               "zonepack build --db map.db --zones zones.geojson --out map",
+                               "zonepack plan map --budget 8MiB"});
   try {
-    std::vector<std::string> arguments = zonepack::packer::subcommand_first(
-        app, std::vector<std::string>(argv + std::min(argc, 1), argv + argc));
-    std::ranges::reverse(arguments);  // the order that CLI11 takes a list in
-    app.parse(std::move(arguments));
+    zonepack::parse_command_line(app, argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const std::exception& error) {

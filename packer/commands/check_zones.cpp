@@ -18,6 +18,7 @@
 #include "packer/sources/rtabmap_database.hpp"
 #include "packer/zones/orphans.hpp"
 #include "packer/zones/partition.hpp"
+#include "platform/command_line/command_line.hpp"
 #include "runtime/report/format.hpp"
 #include "runtime/report/report.hpp"
 

@@ -17,6 +17,7 @@
 #include "packer/export/zone_export.hpp"
 #include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
+#include "platform/command_line/command_line.hpp"
 
 namespace zonepack::packer {
 namespace {

@@ -10,6 +10,7 @@
 #include "packer/console/command_line.hpp"
 #include "packer/inspect/map_inspection.hpp"
 #include "packer/inspect/pack_inspection.hpp"
+#include "platform/command_line/command_line.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 
 namespace zonepack::packer {

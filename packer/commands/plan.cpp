@@ -11,6 +11,7 @@
 #include "packer/console/words.hpp"
 #include "packer/decode/map_reader.hpp"
 #include "packer/inspect/map_plan.hpp"
+#include "platform/command_line/command_line.hpp"
 
 namespace zonepack::packer {
 namespace {

@@ -7,6 +7,7 @@
 #include "packer/build/leftovers.hpp"
 #include "packer/console/command_line.hpp"
 #include "packer/console/words.hpp"
+#include "platform/command_line/command_line.hpp"
 
 namespace zonepack::packer {
 namespace {

@@ -15,6 +15,7 @@
 #include "packer/decode/map_reader.hpp"
 #include "packer/preview/ground.hpp"
 #include "packer/sources/rtabmap_database.hpp"
+#include "platform/command_line/command_line.hpp"
 #include "runtime/pack_format/file/accounting.hpp"
 #include "runtime/pack_format/file/checksum.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"

@@ -10,6 +10,7 @@
 #include "packer/console/words.hpp"
 #include "packer/decode/map_reader.hpp"
 #include "packer/verify/map_verifier.hpp"
+#include "platform/command_line/command_line.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 
 namespace zonepack::packer {
@@ -42,6 +43,7 @@ nlohmann::ordered_json to_json(const Verdict& verdict, const std::string& path) 
   json["packs"] = verdict.packs;
   json["signatures"] = verdict.signatures;
   json["bytes"] = verdict.bytes;
+  json["problem_count"] = verdict.problem_count();
   json["problems"] = nlohmann::ordered_json::array();
   for (const Problem& problem : verdict.problems) json["problems"].push_back(to_json(problem));
   json["unnamed_files"] = verdict.unnamed;
@@ -73,7 +75,7 @@ void print(const Verdict& verdict, const std::string& path, std::ostream& out) {
   if (verdict.whole()) {
     out << "whole";
   } else {
-    out << "DAMAGED: " << plural(verdict.problems.size(), "problem");
+    out << "DAMAGED: " << plural(verdict.problem_count(), "problem");
   }
   out << "; " << plural(verdict.packs, "pack") << ", " << plural(verdict.signatures, "signature")
       << ", " << size_text(verdict.bytes) << " checked\n";

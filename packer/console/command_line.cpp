@@ -34,40 +34,7 @@ PayloadMask parse_payload(const std::string& text) {
   return mask;
 }
 
-// Whether a word is an option that takes the next word as its value, in any subcommand.
-bool takes_value(const CLI::App& app, const std::string& word) {
-  if (!word.starts_with("--") || word.find('=') != word.npos) return false;
-  const auto subcommands = app.get_subcommands([](const CLI::App*) { return true; });
-  return std::ranges::any_of(subcommands, [&](const CLI::App* subcommand) {
-    const CLI::Option* const option = subcommand->get_option_no_throw(word);
-    return option != nullptr && option->get_items_expected_max() > 0;
-  });
-}
-
 }  // namespace
-
-std::vector<std::string> subcommand_first(const CLI::App& app, std::vector<std::string> arguments) {
-  const auto subcommands = app.get_subcommands([](const CLI::App*) { return true; });
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (arguments[i] == "--") break;
-    if (i > 0 && takes_value(app, arguments[i - 1])) continue;
-    const bool named = std::ranges::any_of(subcommands, [&](const CLI::App* subcommand) {
-      return subcommand->check_name(arguments[i]);
-    });
-    if (!named) continue;
-    const auto word = arguments.begin() + static_cast<std::ptrdiff_t>(i);
-    std::rotate(arguments.begin(), word, word + 1);
-    break;
-  }
-  return arguments;
-}
-
-void add_examples(CLI::App& app, const std::vector<std::string>& commands) {
-  std::string text = app.get_footer();
-  text += text.empty() ? "Examples:" : "\n\nExamples:";
-  for (const std::string& command : commands) text += "\n  " + command;
-  app.footer(text);
-}
 
 CLI::Option* add_size_option(CLI::App& app, const std::string& name, ByteCount& target,
                              const std::string& help) {

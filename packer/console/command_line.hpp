@@ -14,14 +14,6 @@
 // What the command lines of the subcommands share.
 namespace zonepack::packer {
 
-// The arguments with the word that names the subcommand moved to the front, so that options may
-// stand on either side of it: "--db map.db build" becomes "build --db map.db". A word that is the
-// value of an option names no subcommand. Without any, they stay as they are.
-std::vector<std::string> subcommand_first(const CLI::App& app, std::vector<std::string> arguments);
-
-// Adds lines of examples to the end of a subcommand's help, each a command to type.
-void add_examples(CLI::App& app, const std::vector<std::string>& commands);
-
 // Adds an option that takes a SIZE (byte_count.hpp): bytes, or with a unit.
 CLI::Option* add_size_option(CLI::App& app, const std::string& name, ByteCount& target,
                              const std::string& help);

@@ -67,8 +67,13 @@ MapReader::MapReader(std::filesystem::path folder) : folder_(std::move(folder)) 
   Result<std::vector<std::byte>> file = read_file(path, kMaxManifestFileBytes);
   if (!file) fail(path, file.error());
   file_ = std::move(*file);
-  const Result<const fb::Manifest*> checked = check_manifest(file_);
-  if (!checked) fail(path, checked.error());
+  ManifestFault fault;
+  const Result<const fb::Manifest*> checked = check_manifest(file_, &fault);
+  if (!checked) {
+    throw std::runtime_error(path + ": " + manifest_fault_text(checked.error(), fault) +
+                             "; 'zonepack verify' reports what is damaged, 'zonepack build' makes "
+                             "the map again");
+  }
   manifest_ = *checked;
 }
 

@@ -68,6 +68,14 @@ struct FloorPlan {
 };
 
 // Skips zones without a finite vertex and points that are not finite.
+// The drawing says where the map lies on it, for a page's script: data-plan="a b c d e f" turns
+// (x, y) of the map into (a x + c y + e, b x + d y + f) on the page.
 Svg draw_floor_plan(const FloorPlan& plan);
+
+// The same plan for a page as narrow as a phone's.
+FloorPlan narrowed(FloorPlan plan);
+
+// What the page's script needs to name zones.
+std::string plan_json(const FloorPlan& plan);
 
 }  // namespace zonepack::report

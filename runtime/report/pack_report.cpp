@@ -111,14 +111,17 @@ Report make_pack_report(const PackReport& map) {
       {"zones", format_count(map.zones.size()), format_count(map.portals.size()) + " portals"},
       {"payload", map.payload, "what is loaded of each signature"},
   };
+  const FloorPlan plan = plan_of(map);
   page.figures.push_back(
       {"Floor plan",
-       "The darker a zone, the more bytes it takes while it is in memory. Dots are signatures, "
-       "where the camera stood; orange bars are portals, where the robot goes from zone to zone." +
+       "The stronger the colour of a zone, the more bytes it takes while it is in memory. Dots are "
+       "signatures, where the camera stood; orange bars are portals, where the robot goes from "
+       "zone "
+       "to zone." +
            std::string(map.ground ? " Black is what the mapping robot saw as occupied, grey what "
                                     "it did not see."
                                   : ""),
-       draw_floor_plan(plan_of(map))});
+       draw_floor_plan(plan), draw_floor_plan(narrowed(plan)), plan_json(plan)});
   page.tables.push_back(table_of(map));
   page.origin = map.source + (map.source.empty() ? "" : " ") + "Version " + map.version + ".";
   return page;

@@ -18,6 +18,7 @@ ARROWS = {
     "platform/linux": "platform platform/base",
     "platform/linux/gpiod": "platform",
     "platform/version": "",
+    "platform/command_line": "",
 
     "runtime/pack_format": "platform/base",
     "runtime/pack_format/file": "platform platform/base runtime/pack_format",
@@ -48,11 +49,11 @@ ARROWS = {
     "runtime/replay": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
                       " runtime/recording runtime/run runtime/settings",
     "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
-    "runtime/zoned": "platform platform/version runtime/calibrate runtime/live runtime/pack_format/file"
+    "runtime/zoned": "platform platform/command_line platform/version runtime/calibrate runtime/live runtime/pack_format/file"
                      " runtime/recording runtime/replay runtime/report",
     "runtime/ctl/commands": "platform platform/base runtime/control runtime/odometry runtime/pack_format/file"
-                            " runtime/protocol runtime/serve runtime/settings",
-    "runtime/ctl": "platform/signals.hpp platform/version runtime/ctl/commands runtime/protocol",
+                            " runtime/protocol runtime/run runtime/serve runtime/settings",
+    "runtime/ctl": "platform/command_line platform/signals.hpp platform/version runtime/ctl/commands runtime/protocol",
 
     "packer/record": "",
     "packer/sources": "packer/record platform/base",
@@ -70,8 +71,8 @@ ARROWS = {
     "packer/inspect": "packer/console packer/decode packer/verify platform/base runtime/pack_format/file",
     "packer/commands": "packer/build packer/console packer/decode packer/export packer/inspect packer/outline"
                        " packer/preview packer/sources packer/verify packer/zones platform platform/base"
-                       " runtime/pack_format runtime/pack_format/file runtime/report",
-    "packer": "platform/signals.hpp packer/commands packer/console platform/version runtime/pack_format/file",
+                       " platform/command_line runtime/pack_format runtime/pack_format/file runtime/report",
+    "packer": "platform/command_line platform/signals.hpp packer/commands platform/version runtime/pack_format/file",
 }
 
 GPIOD = r"gpiod\.h"
@@ -85,7 +86,7 @@ FOREIGN = {
     r"sodium": "runtime/pack_format/file runtime/run",
     r"yaml-cpp/": "runtime/settings runtime/live",
     r"Eigen/": "runtime/calibrate",
-    r"CLI/": "runtime/zoned runtime/ctl packer packer/commands packer/console",
+    r"CLI/": "platform/command_line runtime/zoned runtime/ctl packer packer/commands packer/console",
     r"sqlite3\.h": "packer/sources",
     r"zlib\.h": "packer/sources packer/preview",
     r"nlohmann/": "packer/commands packer/console packer/inspect packer/outline packer/verify packer/zones",
