@@ -12,8 +12,10 @@
 
 #include "packer/build/manifest_writer.hpp"
 #include "packer/build/map_folder.hpp"
+#include "packer/build/repeated_features.hpp"
 #include "packer/encode/packable.hpp"
 #include "packer/sources/rtabmap_database.hpp"
+#include "platform/base/file_kind.hpp"
 #include "platform/base/require.hpp"
 
 namespace zonepack::packer {
@@ -83,6 +85,7 @@ class MapBuilder {
   std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> links_;  // by zone: from, to
   std::set<std::int32_t> skipped_;                                         // damaged
   std::vector<Damage> damages_;
+  RepeatedFeatures repeated_;
   std::mutex mutex_;
 };
 
@@ -160,6 +163,7 @@ void MapBuilder::pack(MapFolder& folder, const ZonePlan& plan,
   }
   packs_.assign(plan.zones.size(), {});
   links_.assign(plan.zones.size(), {});
+  repeated_.clear();
   std::vector<std::size_t> order(plan.zones.size());  // largest first, for an even load
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
@@ -216,6 +220,7 @@ void MapBuilder::pack_zone(RtabmapDatabase& database, MapFolder& folder, std::si
       }
       continue;
     }
+    repeated_.add(record);
     for (const Link& link : record.links) links_[zone].emplace_back(record.id, link.to);
     writer.add(record, static_cast<float>(place.p_map.x_m), static_cast<float>(place.p_map.y_m));
   }
@@ -314,6 +319,14 @@ Digest16 MapBuilder::lineage() const {
 }
 
 void MapBuilder::finish(MapFolder& folder) {
+  // In a whole database a robot that stands still in a simulation may see the same image twice.
+  if (const auto repeated = repeated_.text(); repeated && !damages_.empty()) {
+    summary_.warnings.push_back(
+        options_.database.string() + ": " + *repeated +
+        ": in a damaged database one page may stand in the place of another, and then at most one "
+        "of them is right; check the file with: sqlite3 " +
+        shell_quoted(options_.database.string()) + " 'PRAGMA integrity_check'");
+  }
   ManifestContent content;
   content.plan = &plan_;
   content.packs = &packs_;

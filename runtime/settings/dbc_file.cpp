@@ -246,7 +246,7 @@ LoadedDbc load_dbc(const std::string& path) {
     return failed;
   }
   text.resize(size);
-  if (const std::string kind = stand_in(text); !kind.empty()) {
+  if (const std::string kind = stand_in(text, path); !kind.empty()) {
     LoadedDbc failed;
     failed.faults = {path + ": is " + kind + "; expected a DBC file"};
     return failed;

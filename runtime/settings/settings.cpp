@@ -119,7 +119,7 @@ LoadedSettings load_settings(const std::string& path) {
     failed.faults = {path + ": cannot be read: " + reason + "; expected a settings file (YAML)"};
     return failed;
   }
-  if (const std::string kind = stand_in(text); !kind.empty()) {
+  if (const std::string kind = stand_in(text, path); !kind.empty()) {
     failed.faults = {path + ": is " + kind + "; expected a settings file (YAML)"};
     return failed;
   }

@@ -88,9 +88,12 @@ TEST(Misdrawn, RecognisesCentimetres) {
 }
 
 TEST(Misdrawn, SaysNothingUnlessItIsMuchBetter) {
-  EXPECT_FALSE(misdrawn({{1, 2}, {9, 3}, {25, 7}}));                   // all inside
-  EXPECT_FALSE(misdrawn({{1, 2}, {9, 3}, {25, 7}, {8, 3}, {2, 25}}));  // 1 of 5: below a quarter
-  EXPECT_FALSE(misdrawn({{40, 40}, {50, 50}, {60, 60}}));              // outside either way
+  EXPECT_FALSE(misdrawn({{1, 2}, {9, 3}, {25, 7}}));  // all inside
+  // Swapped, (2, 25) is in the lobby: 0 orphans and not 1, but that is 1 of 5, below a quarter.
+  EXPECT_FALSE(misdrawn({{1, 2}, {2, 1}, {3, 3}, {2, 3}, {2, 25}}));
+  // Swapped, 6 of 8 orphans stay: more than half.
+  EXPECT_FALSE(
+      misdrawn({{40, 40}, {41, 41}, {42, 42}, {43, 43}, {44, 44}, {45, 45}, {2, 25}, {2, 26}}));
 }
 
 }  // namespace
