@@ -15,14 +15,14 @@ namespace {
 
 using std::string_view_literals::operator""sv;
 
-struct Kind {
+struct StandIn {
   std::string_view magic;
   const char* text;
 };
 
 // The text of the kind, with the path as a word of a shell in the place of @.
-std::string kind_in(std::span<const Kind> kinds, std::string_view bytes, std::string_view path) {
-  for (const Kind& kind : kinds) {
+std::string kind_in(std::span<const StandIn> kinds, std::string_view bytes, std::string_view path) {
+  for (const StandIn& kind : kinds) {
     if (!bytes.starts_with(kind.magic)) continue;
     std::string text = kind.text;
     const std::size_t at = text.find('@');
@@ -46,7 +46,7 @@ std::optional<std::string> first_bytes_of(const std::string& path) {
 }  // namespace
 
 std::string stand_in(std::string_view bytes, std::string_view path) {
-  static constexpr std::array<Kind, 7> kKinds = {{
+  static constexpr std::array<StandIn, 7> kKinds = {{
       {"version https://git-lfs"sv,
        "a Git LFS pointer, not the file itself; run: git lfs pull (package git-lfs)"},
       {"\x1F\x8B"sv, "compressed by gzip; run gunzip first: gunzip < @ > NEW"},
@@ -62,7 +62,7 @@ std::string stand_in(std::string_view bytes, std::string_view path) {
 }
 
 std::string known_kind(std::string_view bytes, std::string_view path) {
-  static constexpr std::array<Kind, 9> kKinds = {{
+  static constexpr std::array<StandIn, 9> kKinds = {{
       {"SQLite format 3\0"sv, "a SQLite database"},
       {"\x89ZPK\r\n\x1A\n"sv, "a pack of a map (*.zpk)"},
       {"\x89ZPM\r\n\x1A\n"sv, "a map's manifest (manifest.zpm)"},

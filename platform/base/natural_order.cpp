@@ -6,13 +6,13 @@
 namespace zonepack {
 namespace {
 
-bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
+bool is_decimal(char c) noexcept { return c >= '0' && c <= '9'; }
 
 // The digits from `at` on, without leading zeros; moves `at` behind them.
 std::string_view take_number(std::string_view text, std::size_t& at) noexcept {
   while (at < text.size() && text[at] == '0') ++at;
   const std::size_t begin = at;
-  while (at < text.size() && is_digit(text[at])) ++at;
+  while (at < text.size() && is_decimal(text[at])) ++at;
   return text.substr(begin, at - begin);
 }
 
@@ -21,7 +21,7 @@ std::string_view take_number(std::string_view text, std::size_t& at) noexcept {
 bool natural_less(std::string_view a, std::string_view b) noexcept {
   std::size_t i = 0, j = 0;
   while (i < a.size() && j < b.size()) {
-    if (is_digit(a[i]) && is_digit(b[j])) {
+    if (is_decimal(a[i]) && is_decimal(b[j])) {
       const std::string_view x = take_number(a, i), y = take_number(b, j);
       if (x.size() != y.size()) return x.size() < y.size();
       if (x != y) return x < y;

@@ -12,7 +12,7 @@
 namespace zonepack {
 namespace {
 
-constexpr int kFlags = O_NONBLOCK | O_CLOEXEC | O_NOFOLLOW | O_NOCTTY;
+constexpr int kOpenFlags = O_NONBLOCK | O_CLOEXEC | O_NOFOLLOW | O_NOCTTY;
 
 Result<void> make(const std::string& path) {
   if (::mkfifo(path.c_str(), 0600) != 0 && errno != EEXIST) return last_error();
@@ -26,7 +26,7 @@ Result<void> make(const std::string& path) {
 
 Result<Presence> Presence::join(const std::string& path) {
   if (const Result<void> made = make(path); !made) return made.error();
-  Descriptor end(::open(path.c_str(), O_RDONLY | kFlags));
+  Descriptor end(::open(path.c_str(), O_RDONLY | kOpenFlags));
   if (!end.is_open()) return last_error();
   return Presence(std::move(end));
 }
@@ -35,7 +35,7 @@ Result<Presence> Presence::begin(const std::string& path, std::chrono::milliseco
   constexpr std::chrono::milliseconds kStep{20};
   if (const Result<void> made = make(path); !made) return made.error();
   for (std::chrono::milliseconds waited{0};; waited += kStep) {
-    const Descriptor writer(::open(path.c_str(), O_WRONLY | kFlags));
+    const Descriptor writer(::open(path.c_str(), O_WRONLY | kOpenFlags));
     if (!writer.is_open() && errno == ENXIO) return join(path);
     if (!writer.is_open()) return last_error();
     if (waited >= wait) return ErrorCode::kBusy;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kBadge = 8;  // radius, pixels
 
-bool is_finite(Point2 p) noexcept { return std::isfinite(p.x_m) && std::isfinite(p.y_m); }
+bool is_placed(Point2 p) noexcept { return std::isfinite(p.x_m) && std::isfinite(p.y_m); }
 
 Ring corners_of(const Box2& box) {
   return {box.min, {box.max.x_m, box.min.y_m}, box.max, {box.min.x_m, box.max.y_m}};
@@ -45,7 +45,7 @@ void draw_fault(Svg& svg, const PlanFault& fault, const PlanView& view) {
              {.stroke = kLimit, .stroke_width = 4, .round = true, .hint = fault.hint});
   }
   for (const Point2& p : fault.points) {
-    if (!is_finite(p)) continue;
+    if (!is_placed(p)) continue;
     svg.circle(view(p), 6, {.stroke = kLimit, .stroke_width = 2.5, .hint = fault.hint});
   }
 }
@@ -55,7 +55,7 @@ void draw_numbers(Svg& svg, const FloorPlan& plan, const PlanView& view) {
   std::vector<Px> taken;
   for (const PlanFault& fault : plan.faults) {
     const std::optional<Point2> place = place_of(fault);
-    if (fault.number.empty() || !place || !is_finite(*place)) continue;
+    if (fault.number.empty() || !place || !is_placed(*place)) continue;
     Px at = view(*place);
     at.x += kBadge + 6;
     const auto hides = [&](Px other) {
@@ -95,7 +95,7 @@ void draw_marks(Svg& svg, const FloorPlan& plan, const PlanView& view) {
   for (const PlanFault& fault : plan.faults) draw_fault(svg, fault, view);
   const double radius = plan.signatures.size() + plan.orphans.size() > 400 ? 2.2 : 3;
   for (const PlanOrphan& orphan : plan.orphans) {
-    if (!is_finite(orphan.p_map)) continue;
+    if (!is_placed(orphan.p_map)) continue;
     svg.circle(view(orphan.p_map), radius, {.fill = kLimit, .hint = orphan.hint});
   }
   draw_numbers(svg, plan, view);
