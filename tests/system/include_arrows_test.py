@@ -61,7 +61,7 @@ ARROWS = {
     "packer/zones": "platform/base runtime/pack_format runtime/pack_format/file",
     "packer/encode": "packer/record platform platform/base runtime/pack_format runtime/pack_format/file",
     "packer/decode": "packer/record platform/base runtime/pack_format runtime/pack_format/file",
-    "packer/build": "packer/encode packer/sources packer/zones platform platform/base platform/version"
+    "packer/build": "packer/encode packer/record packer/sources packer/zones platform platform/base platform/version"
                     " runtime/pack_format/file",
     "packer/verify": "packer/decode packer/record packer/zones platform platform/base runtime/pack_format"
                      " runtime/pack_format/file",
