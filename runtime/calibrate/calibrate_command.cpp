@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/calibrate/calibrate_command.hpp"
 
+#include <algorithm>
 #include <iostream>
 
 #include "platform/atomic_file.hpp"
@@ -87,12 +88,14 @@ Outcome<Settings> usable_settings(const std::string& config) {
   return std::move(loaded.settings);
 }
 
-// Whether the settings can hold what was found.
+// Whether the drive determines it, and the settings can hold it.
 bool can_be_pasted(const Calibration& c, const OdometrySettings& odometry) {
   constexpr double kMostScale = 2;  // config/SETTINGS.md
+  constexpr double kMostSigma = 0.2;
   const double mean = (c.fitted.left + c.fitted.right) / 2;
   const double scale = odometry.scale * mean;
   return c.fitted.left > 0 && c.fitted.right > 0 && c.fitted.track_m > 0 &&
+         c.scale_sigma < kMostSigma * mean && c.track_sigma_m < kMostSigma * c.fitted.track_m &&
          (!is_length(odometry.unit) || (scale >= 1 / kMostScale && scale <= kMostScale));
 }
 
@@ -143,7 +146,7 @@ Outcome<void> calibrate_and_report(const CalibrateArguments& arguments) {
       LogTime::read(arguments.can, settings->can.interface).on_first_clock(*as_written);
   WheelWatch watch(*settings, {motion_on(truth), "the true path"});
   const auto steps = read_steps(*settings, arguments.can, watch);
-  const std::vector<WheelHint> hints = wheel_hints(*settings, watch.evidence());
+  std::vector<WheelHint> hints = wheel_hints(*settings, watch.evidence());
   if (!steps) return not_calibrated(steps.error().message, hints);
   const std::string files = arguments.can + " with " + arguments.truth + ": ";
   const auto result = calibrate(*steps, truth, odometry.wheels);
@@ -153,9 +156,14 @@ Outcome<void> calibrate_and_report(const CalibrateArguments& arguments) {
     return not_calibrated(files + "least squares gives a scale of " +
                               short_number((result->fitted.left + result->fitted.right) / 2) +
                               " and a track of " + short_number(result->fitted.track_m) +
-                              " m, which no wheels have",
+                              " m, which no such wheels have",
                           hints);
   }
+  // What least squares estimates needs no hint.
+  const auto estimated = [](const WheelHint& hint) {
+    return hint.kind == "track" || hint.kind == "radius" || hint.kind == "scale";
+  };
+  hints.erase(std::remove_if(hints.begin(), hints.end(), estimated), hints.end());
   std::cerr << hint_texts(hints);
   const bool json_on_output = arguments.json == "-";
   (json_on_output ? std::cerr : std::cout)

@@ -72,11 +72,42 @@ double ratio_with(const OdometrySettings& odometry, WheelUnit unit) {
   return metres_per_unit(other) / metres_per_unit(odometry);
 }
 
+// A factor that slips into settings, and what makes it.
+struct KnownFactor {
+  double times;
+  const char* meaning;
+};
+constexpr KnownFactor kKnownFactors[] = {
+    {10, "a power of ten"},
+    {100, "centimetres for metres"},
+    {1000, "thousandths for the whole"},
+    {3.6, "km/h for m/s"},
+    {60, "a minute for a second"},
+    {2 * kPi, "radians for turns"},
+    {180 / kPi, "degrees for radians"},
+    {60 / (2 * kPi), "turns a minute for radians a second"},
+    {1 / 0.3048, "feet for metres"},
+    {1 / 0.0254, "inches for metres"},
+};
+
+std::optional<KnownFactor> known_factor(double times) {
+  for (const KnownFactor& known : kKnownFactors) {
+    if (near(times, known.times)) return known;
+    if (near(times * known.times, 1)) return KnownFactor{1 / known.times, known.meaning};
+  }
+  return std::nullopt;
+}
+
 // The factors of the signals, `times` less.
 WheelHint factor_hint(const Settings& settings, const std::vector<SignalKey>& keys, double times,
                       const std::string& seen) {
   WheelHint hint{
       "factor", seen + ": the factor of the signals is too " + (times > 1 ? "large" : "small"), {}};
+  if (const auto known = known_factor(times)) {
+    times = known->times;
+    hint.text += " by " + short_number(times > 1 ? times : 1 / times) + " (" + known->meaning +
+                 ", or the reverse)";
+  }
   bool written = false;
   for (const SignalKey& key : keys) {
     const auto signal = settings.can.signals.find(key.name);

@@ -268,6 +268,9 @@ std::vector<WheelHint> side_hints(const Settings& settings, const WheelEvidence&
                        {}});
     }
   }
+  if (hints.size() == 2 && hints[0].kind == "speed-as-position" && hints[1].kind == hints[0].kind) {
+    hints.pop_back();  // one line mends both
+  }
   if (!hints.empty()) return hints;
 
   SideFaults faults;

@@ -100,6 +100,35 @@ std::optional<WheelHint> counted(const Settings& settings, const WheelEvidence& 
   return std::nullopt;
 }
 
+// Two wheels that only ever turn against each other, when nothing says what the robot did.
+std::optional<WheelHint> opposite(const Settings& settings, const WheelEvidence& evidence) {
+  constexpr double kLeastWay_m = 5;
+  constexpr double kUnequal = 0.1;
+  const OdometrySettings& o = settings.odometry;
+  if (!evidence.windows.empty() || evidence.traces.size() != 2) return std::nullopt;
+  const double left = evidence.traces[0].moved() * o.wheels.metres_per_unit[0];
+  const double right = evidence.traces[1].moved() * o.wheels.metres_per_unit[1];
+  const double least = std::min(std::abs(left), std::abs(right));
+  if (least < kLeastWay_m || std::abs(left + right) > kUnequal * least) return std::nullopt;
+  const std::string wrong = left < 0 ? "left" : "right";
+  std::vector<std::string> inverted = o.invert;
+  const auto at = std::find(inverted.begin(), inverted.end(), wrong);
+  if (at != inverted.end()) {
+    inverted.erase(at);
+  } else {
+    inverted.push_back(wrong);
+  }
+  std::string line = "  invert: [";
+  for (const std::string& key : inverted) line += (line.back() == '[' ? "" : ", ") + key;
+  return WheelHint{"sign",
+                   "left and right went opposite ways, " + decimals_text(left, 1) + " and " +
+                       decimals_text(right, 1) +
+                       " m: unless the robot only turned on the spot, one counts backwards; if it "
+                       "drove forward, it is odometry." +
+                       wrong,
+                   {"odometry:", line + "]"}};
+}
+
 std::optional<WheelHint> too_fast(const Settings& settings, const WheelEvidence& evidence) {
   constexpr std::uint64_t kLeastSamples = 20;
   if (evidence.samples < kLeastSamples || evidence.too_fast * 2 < evidence.samples) {
@@ -159,6 +188,7 @@ std::vector<WheelHint> wheel_hints(const Settings& settings, const WheelEvidence
     hints = against_expectation(settings, evidence);
   } else if (has_sides(settings.odometry.wheels.model)) {
     hints = side_hints(settings, evidence);
+    if (auto against = opposite(settings, evidence)) hints.push_back(*against);
   } else if (is_twist(settings.odometry.wheels.model)) {
     hints = twist_hints(settings, evidence);
   }
