@@ -11,12 +11,12 @@ namespace zonepack {
 
 // The command line of `zoned listen`; empty paths: not given.
 struct ListenArguments {
-  std::string config;
-  FeedChoice feed;
-  std::optional<double> duration_s;
-  std::string truth, corrections;  // of a log
-  std::string json;                // "-": standard output
-  std::optional<ExpectedMotion> expected;
+  std::string config = {};
+  FeedChoice feed = {};
+  std::optional<double> duration_s = {};
+  std::string truth = {}, corrections = {};  // of a log
+  std::string json = {};                     // "-": standard output
+  std::optional<ExpectedMotion> expected = {};
   bool once = false;
 };
 

@@ -9,9 +9,9 @@ namespace zonepack {
 
 // How the picture is shown.
 struct ListenStyle {
-  std::string source;       // as the title names it
-  std::string instruction;  // what somebody is to do with the robot; may be empty
-  std::string note;         // what has changed at the bus; may be empty
+  std::string source = {};       // as the title names it
+  std::string instruction = {};  // what somebody is to do with the robot; may be empty
+  std::string note = {};         // what has changed at the bus; may be empty
   bool color = false;
 };
 
