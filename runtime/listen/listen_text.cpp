@@ -116,13 +116,12 @@ std::string robot_lines(const ListenPicture& picture) {
   if (picture.samples == 0) {
     text += "no step of odometry yet\n";
   } else {
-    text += picture.stale ? "stale; "
+    text += picture.stale ? "stale"
                           : signed_text(picture.speed_m_s, 2) + " m/s, " +
-                                signed_text(picture.yaw_rate_rad_s * kDegree, 1) + " deg/s; ";
-    text += decimals_text(picture.distance_m, 2) + " m travelled, turned " +
-            signed_text(picture.heading_rad * kDegree, 1) + " deg, now x " +
-            signed_text(picture.pose.x_m, 2) + " y " + signed_text(picture.pose.y_m, 2) +
-            " m from the start\n";
+                                signed_text(picture.yaw_rate_rad_s * kDegree, 1) + " deg/s";
+    text += "\nway       " + decimals_text(picture.distance_m, 2) + " m, turned " +
+            signed_text(picture.heading_rad * kDegree, 1) + " deg; from the start x " +
+            signed_text(picture.pose.x_m, 2) + " y " + signed_text(picture.pose.y_m, 2) + " m\n";
   }
   text += "samples   " + std::to_string(picture.samples) + " used, " +
           std::to_string(picture.refused) + " refused";
@@ -174,24 +173,27 @@ std::string listen_text(const ListenPicture& picture, const ListenStyle& style) 
 }
 
 std::string fitted(const std::string& text, int columns, int rows) {
+  const auto wide = static_cast<std::size_t>(std::max(columns, 1));
   std::string fit;
-  int column = 0, row = 0;
-  bool escape = false;
-  for (const char c : text) {
-    if (c == '\n') {
-      if (++row >= rows) break;
-      fit += c;
-      column = 0;
-      continue;
+  int row = 0;
+  for (std::size_t from = 0; from < text.size() && row < rows;) {
+    const std::size_t end = std::min(text.find('\n', from), text.size());
+    std::size_t width = 0, at = from, blank = from;
+    bool escape = false;  // colors take no column
+    for (; at < end; ++at) {
+      const char c = text[at];
+      if (c == '\x1b') escape = true;
+      if (!escape && !continues_utf8(c) && ++width > wide) break;
+      if (escape && c == 'm') escape = false;
+      if (c == ' ' && at > from) blank = at;
     }
-    // Colors take no column.
-    if (c == '\x1b') escape = true;
-    const bool counts = !escape && !continues_utf8(c);
-    if (counts) ++column;
-    if (escape || column <= columns) fit += c;
-    if (escape && c == 'm') escape = false;
+    // A longer line goes on below, from its last blank if it has one.
+    const std::size_t cut = at < end && blank > from ? blank : at;
+    fit += text.substr(from, cut - from) + "\n";
+    ++row;
+    from = cut == end || (cut < end && text[cut] == ' ') ? cut + 1 : cut;
   }
-  return fit.empty() || fit.back() == '\n' ? fit : fit + "\n";
+  return fit;
 }
 
 }  // namespace zonepack

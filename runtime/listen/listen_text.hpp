@@ -18,7 +18,8 @@ struct ListenStyle {
 // The picture as a table of signals, and below it what they mean; each line ends with a line feed.
 std::string listen_text(const ListenPicture& picture, const ListenStyle& style);
 
-// The text with lines of at most `columns` code points and at most `rows` lines.
+// The text in lines of at most `columns` code points, longer ones broken at blanks, and of these
+// the first `rows`.
 std::string fitted(const std::string& text, int columns, int rows);
 
 // The picture as one JSON object, with what odometry missed (may be empty).

@@ -10,6 +10,21 @@
 #include "runtime/run/rejected_text.hpp"
 
 namespace zonepack {
+namespace {
+
+// Whether something moved, and stands now.
+bool done_moving(const ListenPicture& picture) {
+  constexpr double kStanding_m_s = 0.005;
+  bool moved = false;
+  for (const ListenPicture::Row& row : picture.rows) {
+    if (row.signal->key.empty()) continue;
+    if (row.state == SignalState::kFresh && std::abs(row.speed_m_s) > kStanding_m_s) return false;
+    moved = moved || row.least_seen != row.most_seen;
+  }
+  return moved;
+}
+
+}  // namespace
 
 const char* word_of(SignalState state) {
   switch (state) {
@@ -152,6 +167,14 @@ ListenPicture Listener::picture(std::int64_t now_ns, bool whole) const {
   picture.reference = evidence.reference;
   picture.compared = evidence.windows.size();
   picture.hints = wheel_hints(settings_, evidence);
+  if (expected_ && !whole && !done_moving(picture)) {
+    // Until then only directions can be judged.
+    const auto early = [](const WheelHint& hint) {
+      return hint.kind != "sign" && hint.kind != "swapped";
+    };
+    picture.hints.erase(std::remove_if(picture.hints.begin(), picture.hints.end(), early),
+                        picture.hints.end());
+  }
   return picture;
 }
 

@@ -66,7 +66,8 @@ class Listener {
 
   void take(const CanFrame& frame);
 
-  // As of now_ns, on the clock of the stamps. `whole`: rates over everything that was heard.
+  // As of now_ns, on the clock of the stamps. `whole`: rates over everything that was heard, and an
+  // expected motion is over; else its amount is judged only once the robot stands again.
   ListenPicture picture(std::int64_t now_ns, bool whole) const;
 
   // Any frame with a signal that odometry reads.

@@ -147,7 +147,9 @@ TEST_F(ListenerTest, TheTextNamesWhatIsMissingAndFitsATerminal) {
   EXPECT_THAT(text, HasSubstr("wheels    left +0.50 m/s (+0.50 m so far)"));
   EXPECT_THAT(text, HasSubstr("compare   with nothing: use --expect forward"));
   EXPECT_THAT(text, Not(HasSubstr("hint:")));
-  EXPECT_EQ(fitted("\x1b[32mfresh\x1b[0m\n12345\n", 3, 9), "\x1b[32mfre\x1b[0m\n123\n");
+  EXPECT_EQ(fitted("\x1b[32mfresh\x1b[0m\n123456 8\n\n", 5, 9),
+            "\x1b[32mfresh\x1b[0m\n12345\n6 8\n\n");
+  EXPECT_EQ(fitted("one two three\n", 8, 9), "one two\nthree\n");
   EXPECT_EQ(fitted("1\n2\n3\n", 80, 2), "1\n2\n");
   EXPECT_EQ(printable("a\x1b[2J\xB0\xC2\xB0"), "a?[2J?\xC2\xB0");
 }
@@ -158,6 +160,17 @@ TEST_F(ListenerTest, WhatSomebodyDoesIsComparedWithTheWheels) {
   const auto hints = listener.picture(1000 * kMs, true).hints;
   ASSERT_EQ(hints.size(), 1u);
   EXPECT_EQ(hints[0].kind, "swapped");
+}
+
+TEST_F(ListenerTest, AnAmountIsJudgedOnceTheRobotStands) {
+  Listener listener(settings_, {}, parse_expected_motion("forward=2"));
+  EXPECT_THAT(listener.picture(0, false).hints, IsEmpty());
+  for (int i = 0; i <= 100; ++i) listener.take(wheels(i * 10 * kMs, 5 * i, 5 * i));
+  EXPECT_THAT(listener.picture(1000 * kMs, false).hints, IsEmpty());
+  for (int i = 101; i <= 200; ++i) listener.take(wheels(i * 10 * kMs, 500, 500));
+  const auto hints = listener.picture(2000 * kMs, false).hints;
+  ASSERT_EQ(hints.size(), 1u);
+  EXPECT_THAT(hints[0].text, HasSubstr("0.5 m of 2 m"));
 }
 
 }  // namespace
