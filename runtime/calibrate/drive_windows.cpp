@@ -20,7 +20,7 @@ TrueMotionOf motion_on(const TruthTrack& track) {
     const double half = motion.yaw_rad / 2;
     const double chord = motion.x_m * std::cos(half) + motion.y_m * std::sin(half);
     const double shorter = std::abs(half) < 1e-6 ? 1 : std::sin(half) / half;
-    return TrueMotion{chord / shorter, motion.yaw_rad};
+    return TrueMotion{chord / shorter, motion.yaw_rad, true};
   };
 }
 
@@ -59,7 +59,10 @@ void DriveWindows::add(const WheelStep& step) {
   windows_.push_back(open_);
 }
 
-void TwistTrack::add_forward(double m_s) { forward_m_s_ = m_s; }
+void TwistTrack::add_forward(double m_s) {
+  forward_m_s_ = m_s;
+  forward_known_ = true;
+}
 
 void TwistTrack::add_yaw_rate(std::int64_t stamp_ns, double rad_s) {
   constexpr double kLongestStep_s = 1;
@@ -72,7 +75,7 @@ void TwistTrack::add_yaw_rate(std::int64_t stamp_ns, double rad_s) {
       samples_.clear();
     } else {
       next.total = {last.total.forward_m + forward_m_s_ * seconds,
-                    last.total.turn_rad + (yaw_rate_rad_s_ + rad_s) / 2 * seconds};
+                    last.total.turn_rad + (yaw_rate_rad_s_ + rad_s) / 2 * seconds, true};
     }
   }
   yaw_rate_rad_s_ = rad_s;
@@ -102,7 +105,7 @@ std::optional<TrueMotion> TwistTrack::between(std::int64_t from_ns, std::int64_t
   const auto from = at(from_ns);
   const auto to = at(to_ns);
   if (!from || !to) return std::nullopt;
-  return TrueMotion{to->forward_m - from->forward_m, to->turn_rad - from->turn_rad};
+  return TrueMotion{to->forward_m - from->forward_m, to->turn_rad - from->turn_rad, forward_known_};
 }
 
 }  // namespace zonepack

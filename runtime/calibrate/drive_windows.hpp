@@ -16,7 +16,8 @@ namespace zonepack {
 // What the robot did, from another source than its wheels.
 struct TrueMotion {
   double forward_m = 0;
-  double turn_rad = 0;  // counter-clockwise
+  double turn_rad = 0;        // counter-clockwise
+  bool forward_known = true;  // false: from a gyroscope, which knows turns only
 };
 
 // The motion between two stamps; nothing where the source does not cover both.
@@ -79,6 +80,7 @@ class TwistTrack {
 
   std::deque<Sample> samples_;
   double forward_m_s_ = 0, yaw_rate_rad_s_ = 0;
+  bool forward_known_ = false;
 };
 
 }  // namespace zonepack

@@ -119,7 +119,8 @@ WheelHint factor_hint(const Settings& settings, const std::vector<SignalKey>& ke
   }
   if (!written) {
     hint.text += "; in " + settings.can.dbc + " divide the factor of";
-    for (const SignalKey& key : keys) hint.text += " " + key.name;
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      hint.text += (i > 0 ? " and " : " ") + keys[i].name;
     hint.text += " by " + short_number(times);
   }
   return hint;
@@ -185,6 +186,8 @@ std::optional<WheelHint> rotation_hint(const OdometrySettings& o, double times,
 WheelHint scale_hint(const Settings& settings, double times, const std::string& seen) {
   const OdometrySettings& o = settings.odometry;
   for (const WheelUnit unit : other_units(settings)) {
+    // Of rotation that counts too much, a gear is likelier than a length that fits by chance.
+    if (is_length(unit) && !is_length(o.unit) && times > 1) continue;
     if (!near(times * ratio_with(o, unit), 1)) continue;
     std::string text = seen + ": the signals are in " + word_of(unit) +
                        (rate_word(o.wheels.model, unit)) + ", not in " + word_of(o.unit) +

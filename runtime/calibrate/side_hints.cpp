@@ -48,7 +48,7 @@ Median median_of(std::vector<double> values) {
 }
 
 bool is_straight(const TrueMotion& motion) {
-  return std::abs(motion.forward_m) >= kLeastForward_m &&
+  return motion.forward_known && std::abs(motion.forward_m) >= kLeastForward_m &&
          std::abs(motion.turn_rad) <= kMostTurnPerMetre * std::abs(motion.forward_m);
 }
 
@@ -239,12 +239,63 @@ std::vector<WheelHint> expected_amount(const Settings& settings, const ExpectedM
                          short_number(o.wheel_radius_m) + ")")};
 }
 
+// The part of side_hints() that a gyroscope allows, which knows turns only.
+std::vector<WheelHint> turn_hints(const Settings& settings, const WheelEvidence& evidence) {
+  const OdometrySettings& o = settings.odometry;
+  const double turn_track_m = o.wheels.geometry.track_m * o.wheels.geometry.slip_factor;
+  constexpr double kMostStraight_rad = 0.05;
+  std::vector<double> ratios;  // of the wheels, where the robot does not turn
+  double left_m = 0;
+  for (const DriveWindow& w : evidence.windows) {
+    const bool moves = std::min(std::abs(w.left_m), std::abs(w.right_m)) >= kLeastForward_m;
+    if (!moves || std::abs(w.truth.turn_rad) > kMostStraight_rad) continue;
+    ratios.push_back(w.left_m / w.right_m);
+    left_m += w.left_m;
+  }
+  const Median straight = median_of(std::move(ratios));
+  SideFaults faults;
+  if (straight.count >= kLeastWindows && straight.agreed && straight.value < 0) {
+    // A robot mostly drives forward.
+    faults.left_sign = left_m < 0;
+    faults.right_sign = !faults.left_sign;
+  }
+  const double sign_left = faults.left_sign ? -1 : 1;
+  const double sign_right = faults.right_sign ? -1 : 1;
+  const Median turn = ratio_of(evidence.windows, true, [&](const DriveWindow& w) {
+    return (w.right_m * sign_right - w.left_m * sign_left) / turn_track_m;
+  });
+  std::vector<WheelHint> hints;
+  faults.swapped = turn.count >= kLeastWindows && turn.agreed && turn.value < 0;
+  if (faults.swapped) {
+    hints.push_back(swap_hint(o, faults,
+                              "in " + std::to_string(turn.count) +
+                                  " pieces of the drive they turn the other way than " +
+                                  evidence.reference + "; or both count backwards"));
+  }
+  if (faults.left_sign || faults.right_sign) {
+    hints.push_back(sign_hint(o, faults,
+                              ": left and right go opposite ways where " + evidence.reference +
+                                  " shows no turn (if the robot drove forward)"));
+  }
+  const double times = std::abs(turn.value);
+  if (turn.count >= kLeastWindows && turn.agreed && times > 0 && !usual(times, kUsualTrack)) {
+    hints.push_back(scale_hint(
+        settings, times,
+        "the wheels report " + times_text(times) + " the turns of " + evidence.reference));
+  }
+  return hints;
+}
+
 }  // namespace
 
 std::vector<WheelHint> side_hints(const Settings& settings, const WheelEvidence& evidence) {
   const OdometrySettings& o = settings.odometry;
   const auto keys = signal_keys(o);
   const auto& windows = evidence.windows;
+  if (std::none_of(windows.begin(), windows.end(),
+                   [](const DriveWindow& w) { return w.truth.forward_known; })) {
+    return turn_hints(settings, evidence);
+  }
   const Median left = ratio_of(windows, false, [](const auto& w) { return w.left_m; });
   const Median right = ratio_of(windows, false, [](const auto& w) { return w.right_m; });
   if (left.count < kLeastWindows) return {};

@@ -98,7 +98,10 @@ class Session {
                             log ? "log" : "bus");
   }
 
-  ListenPicture last_picture() const { return listener_.picture(feed_.now_ns(), true); }
+  // Of a log that has ended as of its end, however long ago that was.
+  ListenPicture last_picture() const {
+    return listener_.picture(feed_.ended() ? listener_.last_ns() : feed_.now_ns(), true);
+  }
   const ListenStyle& style() const noexcept { return style_; }
 
  private:

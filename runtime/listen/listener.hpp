@@ -70,6 +70,9 @@ class Listener {
   // expected motion is over; else its amount is judged only once the robot stands again.
   ListenPicture picture(std::int64_t now_ns, bool whole) const;
 
+  // The latest stamp; meaningful once a frame came.
+  std::int64_t last_ns() const noexcept { return last_ns_; }
+
   // Any frame with a signal that odometry reads.
   bool heard_odometry() const noexcept;
 

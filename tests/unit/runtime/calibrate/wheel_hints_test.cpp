@@ -204,6 +204,80 @@ TEST(WheelHints, SignalsOfSomethingElseDoNotFollowTheRobot) {
   EXPECT_THAT(hints[0].text, HasSubstr("odometry.left (left_position)"));
 }
 
+// Four windows straight on and four to the left, of wheels that report `times` the way.
+std::deque<DriveWindow> windows(double times, double track_m, bool forward_known = true) {
+  std::deque<DriveWindow> all;
+  for (int i = 0; i < 4; ++i) {
+    all.push_back({2, times, times, {1, 0, forward_known}});
+    all.push_back(
+        {2, -0.5 * track_m / 2 * times, 0.5 * track_m / 2 * times, {0, 0.5, forward_known}});
+  }
+  return all;
+}
+
+TEST(WheelHints, SpeedsInOtherUnitsAreNamed) {
+  Settings settings = settings_of(agilex());
+  OdometrySettings& o = settings.odometry;
+  o.wheels.model = OdometryModel::kWheelSpeeds;
+  const auto yaml_of = [&settings, &o](WheelUnit unit, double times) {
+    o.unit = unit;
+    WheelEvidence evidence;
+    evidence.windows = windows(times, o.wheels.geometry.track_m);
+    const auto hints = wheel_hints(settings, evidence);
+    EXPECT_EQ(hints.size(), 1u) << times;
+    return hints.empty() ? std::vector<std::string>() : hints[0].yaml;
+  };
+  EXPECT_THAT(yaml_of(WheelUnit::kMetres, 3.6), ElementsAre("odometry:", "  unit: km/h"));
+  EXPECT_THAT(yaml_of(WheelUnit::kTurns, 60), ElementsAre("odometry:", "  unit: rpm"));
+  // rpm for rad/s: 60 / (2 pi).
+  EXPECT_THAT(yaml_of(WheelUnit::kRadians, 9.5493), ElementsAre("odometry:", "  unit: rpm"));
+  EXPECT_THAT(yaml_of(WheelUnit::kRpm, 20), ElementsAre("odometry:", "  gear: 20"));
+  o.pole_pairs = 1;
+  EXPECT_THAT(yaml_of(WheelUnit::kErpm, 15), ElementsAre("odometry:", "  pole_pairs: 15"));
+  o.ticks_per_turn = 1024;
+  EXPECT_THAT(yaml_of(WheelUnit::kTicks, 4), ElementsAre("odometry:", "  ticks_per_turn: 4096"));
+}
+
+TEST(WheelHints, AGyroscopeTellsSwappedWheelsAndASign) {
+  const Settings settings = settings_of(agilex());
+  WheelEvidence evidence;
+  evidence.windows = windows(1, 0.413, false);
+  EXPECT_THAT(wheel_hints(settings, evidence), IsEmpty());
+  for (DriveWindow& window : evidence.windows) std::swap(window.left_m, window.right_m);
+  auto hints = wheel_hints(settings, evidence);
+  ASSERT_EQ(hints.size(), 1u);
+  EXPECT_EQ(hints[0].kind, "swapped");
+  evidence.windows = windows(1, 0.413, false);
+  for (DriveWindow& window : evidence.windows) window.left_m = -window.left_m;
+  hints = wheel_hints(settings, evidence);
+  ASSERT_EQ(hints.size(), 1u);
+  EXPECT_THAT(hints[0].yaml, ElementsAre("odometry:", "  invert: [left]"));
+}
+
+TEST(WheelHints, WheelsThatOnlyGoOppositeWaysAreDoubted) {
+  // 6 m forward and 6 m back, with nothing to compare with.
+  const Settings settings = settings_of(
+      "can: {signals: {l: {id: 1, start: 0, length: 16, type: signed},\n"
+      "                r: {id: 1, start: 16, length: 16, type: signed}}}\n"
+      "odometry: {model: differential-positions, left: l, right: r, unit: mm}\n");
+  WheelWatch watch(settings);
+  for (int i = 0; i <= 600; ++i) {
+    CanFrame frame;
+    frame.id = 1;
+    frame.len = 4;
+    frame.stamp_ns = i * 20'000'000ll;
+    const int left = 10 * i, right = -10 * i;
+    frame.data = {static_cast<std::uint8_t>(left & 0xFF), static_cast<std::uint8_t>(left >> 8),
+                  static_cast<std::uint8_t>(right & 0xFF),
+                  static_cast<std::uint8_t>(right >> 8 & 0xFF)};
+    watch.take(frame);
+  }
+  const auto hints = wheel_hints(settings, watch.evidence());
+  ASSERT_EQ(hints.size(), 1u);
+  EXPECT_THAT(hints[0].text, HasSubstr("opposite ways, 6.0 and -6.0 m"));
+  EXPECT_THAT(hints[0].yaml, ElementsAre("odometry:", "  invert: [right]"));
+}
+
 // Without a reference only the limits speak.
 TEST(WheelHints, SpeedsThatNoRobotHasAskForAUnitOrAGear) {
   Settings settings = settings_of(agilex());
