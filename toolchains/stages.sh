@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Sourced by toolchains/run: the stages of `test --all`. `toolchains/run stage NAME` runs one alone; each builds what it
 # needs, and exits with 77 where this machine cannot run it.
-stages=(tests lint asan tsan prove arm64 armhf robot decisions)
+stages=(tests lint asan tsan prove deb arm64 armhf robot decisions)
 
 stage_tests() {
   build test
@@ -32,6 +32,7 @@ stage_prove() {
   do_prove --quick
 }
 
+stage_deb() { do_deb; }
 stage_arm64() { cross_stage arm64; }
 stage_armhf() { cross_stage armhf; }
 

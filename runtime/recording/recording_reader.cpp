@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "platform/base/file_kind.hpp"
 #include "runtime/recording/block.hpp"
 #include "runtime/recording/flight_names.hpp"
 
@@ -68,6 +69,9 @@ Outcome<void> RecordingReader::open_files() {
   Result<void> checked = files_.front().read_at(0, bytes);
   if (checked) checked = check_recording_header(bytes);
   if (!checked) {
+    if (const std::string kind = stand_in_at(names.front()); !kind.empty()) {
+      return failure(names.front() + ": is " + kind, checked.error().code);
+    }
     return failure(names.front() +
                        ": not a recording that can be read: " + error_text(checked.error()) +
                        "; expected format version " + std::to_string(kRecordingMajor),

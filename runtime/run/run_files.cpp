@@ -83,10 +83,14 @@ bool is_header(std::span<const std::string_view> words) {
   });
 }
 
+void ignore_names(std::span<const std::string_view>) {}
+
 // Calls take(words) for every record; it fails with what is wrong with the line. The first two
-// columns of a record may be stamps, so columns are words here.
-template <typename Take>
-Outcome<void> for_each_record(const std::string& path, std::string_view columns, Take&& take) {
+// columns of a record may be stamps, so columns are words here. Calls names(words) for a first line
+// of column names, which may begin with #.
+template <typename Take, typename Names>
+Outcome<void> for_each_record(const std::string& path, std::string_view columns, Take&& take,
+                              Names&& names) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) {
@@ -104,8 +108,10 @@ Outcome<void> for_each_record(const std::string& path, std::string_view columns,
     std::string_view text = line;
     if (number == 1 && text.starts_with(kByteOrderMark)) text.remove_prefix(3);
     const std::vector<std::string_view> words = split(text);
-    if (words.empty() || words[0].front() == '#' || words[0].front() == '%') continue;
+    if (words.empty()) continue;
     const bool header = first && is_header(words);
+    if (header) names(std::span(words));
+    if (words[0].front() == '#' || words[0].front() == '%') continue;
     first = false;
     if (header) continue;
     const Outcome<void> taken =
@@ -133,6 +139,20 @@ Outcome<void> parse_numbers(std::span<const std::string_view> words, std::size_t
   return {};
 }
 
+// The component that the columns' names put first in the quaternion: 'w' in EuRoC's "q_RS_w []".
+// 0: they name none.
+char first_of_quaternion(std::span<const std::string_view> names) {
+  for (const std::string_view name : names) {
+    const char last = name.back();
+    const bool component = last >= 'w' && last <= 'z';
+    if (component && name[0] == 'q' && (name.size() == 2 || name[1] == '_')) return last;
+  }
+  return 0;
+}
+
+// Whether a rotation with these x and y leans the robot's vertical axis by more than 60 degrees.
+bool lies_down(double qx, double qy) { return 1 - 2 * (qx * qx + qy * qy) < 0.5; }
+
 Failure not_a_stamp(std::string_view word) {
   return failure(in_quotes(word) + " is not a stamp in seconds");
 }
@@ -155,7 +175,8 @@ Outcome<std::vector<PoseCorrection>> read_corrections_as_written(const std::stri
     corrections.push_back(c);
     return {};
   };
-  if (const auto read = for_each_record(path, kCorrectionColumns, take); !read) return read.error();
+  if (const auto read = for_each_record(path, kCorrectionColumns, take, ignore_names); !read)
+    return read.error();
   return corrections;
 }
 
@@ -190,6 +211,8 @@ std::optional<Pose2> TruthTrack::at(std::int64_t t_ns) const noexcept {
 
 Outcome<TruthTrack> read_truth(const std::string& path) {
   std::vector<TruthTrack::Sample> samples;
+  bool w_first = false;
+  std::size_t lying = 0, lying_with_w_first = 0;
   const auto take = [&](std::span<const std::string_view> words) -> Outcome<void> {
     TruthTrack::Sample sample;
     if (!parse_stamp(words[0], sample.t_ns)) return not_a_stamp(words[0]);
@@ -198,7 +221,10 @@ Outcome<TruthTrack> read_truth(const std::string& path) {
     }
     double v[7] = {};
     if (auto numbers = parse_numbers(words, 1, v); !numbers) return numbers;
+    if (w_first) std::rotate(v + 3, v + 4, v + 7);
     const auto [x, y, z, qx, qy, qz, qw] = v;
+    lying += lies_down(qx, qy) ? 1 : 0;
+    lying_with_w_first += lies_down(qy, qz) ? 1 : 0;
     const double norm2 = qx * qx + qy * qy + qz * qz + qw * qw;
     if (!std::isfinite(x + y + z)) return failure("a position that is not finite");
     if (!(norm2 > 0.98 && norm2 < 1.02)) return failure("a quaternion that is not of length 1");
@@ -207,9 +233,19 @@ Outcome<TruthTrack> read_truth(const std::string& path) {
     samples.push_back(sample);
     return {};
   };
-  if (const auto read = for_each_record(path, kTruthColumns, take); !read) return read.error();
+  const auto names = [&](std::span<const std::string_view> words) {
+    w_first = first_of_quaternion(words) == 'w';
+  };
+  if (const auto read = for_each_record(path, kTruthColumns, take, names); !read) {
+    return read.error();
+  }
   if (samples.empty()) {
     return failure(path + ": no samples; expected lines of " + std::string(kTruthColumns));
+  }
+  if (!w_first && lying > samples.size() / 2 && lying_with_w_first == 0) {
+    return failure(path +
+                   ": the robot would lie on its side; the quaternions seem to be qw qx qy qz, "
+                   "as EuRoC writes them: name the columns in a first line: # t x y z qw qx qy qz");
   }
   return TruthTrack(std::move(samples));
 }

@@ -46,7 +46,8 @@ class TruthTrack {
 };
 
 // `t x y z qx qy qz qw`, further columns ignored; stamps must not step back. z is not used; of the
-// rotation (a unit quaternion to 1 %) only the heading.
+// rotation (a unit quaternion to 1 %) only the heading. A first line of column names, with or
+// without #, may say that qw comes first, as EuRoC's does.
 Outcome<TruthTrack> read_truth(const std::string& path);
 
 }  // namespace zonepack

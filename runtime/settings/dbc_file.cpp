@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "platform/base/file_kind.hpp"
 #include "runtime/settings/dbc_parser.hpp"
 #include "runtime/settings/nearest_word.hpp"
 
@@ -245,6 +246,11 @@ LoadedDbc load_dbc(const std::string& path) {
     return failed;
   }
   text.resize(size);
+  if (const std::string kind = stand_in(text); !kind.empty()) {
+    LoadedDbc failed;
+    failed.faults = {path + ": is " + kind + "; expected a DBC file"};
+    return failed;
+  }
   LoadedDbc loaded = parse_dbc(text, path);
   loaded.text = std::move(text);
   return loaded;

@@ -58,6 +58,8 @@ constexpr auto kQuantities = std::to_array<UnitWord>({
     {"inc", Quantity::kTicks, 1},
     {"increment", Quantity::kTicks, 1},
     {"step", Quantity::kTicks, 1},
+    {"%", Quantity::kPercent, 0.01},
+    {"pct", Quantity::kPercent, 0.01},
 });
 
 struct UnitTime {
@@ -91,7 +93,8 @@ constexpr auto kAliases = std::to_array<UnitAlias>({{"kph", "km/h"},
                                                     {"min-1", "1/min"},
                                                     {"rps", "1/s"},
                                                     {"dps", "deg/s"},
-                                                    {"rads-1", "rad/s"}});
+                                                    {"rads-1", "rad/s"},
+                                                    {"/cent", "%"}});  // "percent"
 
 constexpr auto kNoUnits =
     std::to_array<std::string_view>({"", "-", "--", "1", "none", "raw", "bit", "bits", "n/a", "na",

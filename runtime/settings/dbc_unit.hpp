@@ -18,6 +18,7 @@ struct DbcUnit {
     kLength,   // si: metres of one unit
     kAngle,    // si: radians of one unit; turns and rpm too
     kTicks,    // of an encoder
+    kPercent,  // si: 0.01, of what odometry.full_scale says
     kUnknown,  // a quantity that odometry cannot use, or a spelling that is not known
   };
   Kind kind = Kind::kUnknown;
@@ -26,7 +27,7 @@ struct DbcUnit {
 };
 
 // Understands the spellings found in public DBC files, in any case and with any blanks: "km/h",
-// "kph", "mm/s", "mph", "deg", "°" (UTF-8 or Latin-1), "deg/sec", "rpm", "1/min", "rev/min".
+// "kph", "mm/s", "mph", "deg", "°" (UTF-8 or Latin-1), "deg/sec", "rpm", "1/min", "rev/min", "%".
 DbcUnit parse_dbc_unit(std::string_view text);
 
 }  // namespace zonepack

@@ -246,8 +246,21 @@ void adopt_dbc_unit(const YamlSection& section, const std::string& text, Odometr
   }
 }
 
+// One percent in units of `odometry`.
+Outcome<double> percent_of_full_scale(const OdometrySettings& odometry, const std::string& text) {
+  if (odometry.full_scale > 0) return odometry.full_scale / 100;
+  return failure("the DBC file gives this signal in \"" + text +
+                 "\"; give odometry.full_scale: what 100 % is, in odometry.unit");
+}
+
+bool is_percent(const std::string& text) {
+  const DbcUnit unit = parse_dbc_unit(text);
+  return unit.kind == DbcUnit::Kind::kPercent && !unit.per_time;
+}
+
 // What a wheel's unit in the DBC file is in units of `odometry`; 1 when both agree.
 Outcome<double> wheel_conversion(const OdometrySettings& odometry, const std::string& text) {
+  if (is_percent(text)) return percent_of_full_scale(odometry, text);
   const bool speeds = !reads_positions(odometry.wheels.model);
   const DbcUnit wanted = as_dbc_unit(odometry.unit);
   std::string expected = "ticks";
@@ -269,6 +282,11 @@ Outcome<double> wheel_conversion(const OdometrySettings& odometry, const std::st
 Outcome<double> si_of(const OdometrySettings& odometry, const std::string& key,
                       const std::string& text) {
   const bool forward = key == "forward";
+  const double forward_si = is_length(odometry.unit) ? as_dbc_unit(odometry.unit).si : 1.0;
+  if (forward && is_percent(text)) {
+    const auto percent = percent_of_full_scale(odometry, text);
+    return percent ? Outcome<double>(*percent * forward_si) : percent;
+  }
   const auto unit =
       forward ? usable_unit(text, DbcUnit::Kind::kLength, true, "m/s, km/h, mm/s or mph")
       : key == "steering"
@@ -276,7 +294,7 @@ Outcome<double> si_of(const OdometrySettings& odometry, const std::string& key,
           : usable_unit(text, DbcUnit::Kind::kAngle, true, "a yaw rate such as rad/s or deg/s");
   if (!unit) return unit.error();
   if (unit->kind != DbcUnit::Kind::kNone) return unit->si;
-  if (forward) return is_length(odometry.unit) ? as_dbc_unit(odometry.unit).si : 1.0;
+  if (forward) return forward_si;
   return odometry.angle_unit == AngleUnit::kDegrees ? kDegree_rad : 1.0;
 }
 
@@ -300,10 +318,12 @@ void resolve_signals(const YamlSection& section, SignalNames& names, OdometrySet
   if (omni) wheels.geometry.omni_wheels = keys.size();
   const std::size_t rolling = WheelModel(wheels.model, wheels.geometry).wheels();
   const double metres = metres_per_unit(odometry);
+  bool percent = false;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const std::string& key = keys[i].key;
     const char* const written = omni ? "around" : key.c_str();
     const std::string unit = names.unit_of(keys[i].name);
+    percent = percent || is_percent(unit);
     names.resolve(section, written, keys[i].name, wheels.signals[i]);
     const auto converted =
         i < rolling ? wheel_conversion(odometry, unit) : si_of(odometry, key, unit);
@@ -317,6 +337,10 @@ void resolve_signals(const YamlSection& section, SignalNames& names, OdometrySet
     if (is_right(key)) scale *= odometry.scale_right;
     const auto& invert = odometry.invert;
     if (std::find(invert.begin(), invert.end(), key) != invert.end()) scale = -scale;
+  }
+  if (odometry.full_scale > 0 && !percent) {
+    faults.add(section.mark_of("full_scale"), section.path_of("full_scale"),
+               "has no effect: the DBC file gives none of these signals in %; leave it out");
   }
 }
 

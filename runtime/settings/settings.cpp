@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "platform/base/file_kind.hpp"
 #include "runtime/settings/field.hpp"
 #include "runtime/settings/gpio_section.hpp"
 #include "runtime/settings/odometry_section.hpp"
@@ -116,6 +117,10 @@ LoadedSettings load_settings(const std::string& path) {
   if (text.empty()) {
     const std::string reason = errno != 0 ? std::strerror(errno) : "empty or not a file";
     failed.faults = {path + ": cannot be read: " + reason + "; expected a settings file (YAML)"};
+    return failed;
+  }
+  if (const std::string kind = stand_in(text); !kind.empty()) {
+    failed.faults = {path + ": is " + kind + "; expected a settings file (YAML)"};
     return failed;
   }
   if (text.size() > kLargestFile) {

@@ -90,6 +90,7 @@ struct OdometrySettings {
   double gear = 1;            // turns of the motor for one of the wheel; not for metres
   double pole_pairs = 1;      // of the motor, for erpm
   double ticks_per_turn = 0;  // of what turns the encoder, for ticks; 0: not given
+  double full_scale = 0;      // what 100 % is, in `unit`, for signals in %; 0: not given
   double scale = 1;           // true over reported distance, from a calibration run
   double scale_left = 1;      // on top of scale, for the wheels of one side
   double scale_right = 1;

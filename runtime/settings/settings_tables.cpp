@@ -145,6 +145,8 @@ const Fields<OdometrySettings>& odometry_fields() {
       {"pole_pairs", &S::pole_pairs, 1, 1000, "", "pole pairs of the motor, for erpm"},
       {"ticks_per_turn", &S::ticks_per_turn, 0, 1e12, "",
        "ticks of the encoder for one turn, for ticks"},
+      {"full_scale", &S::full_scale, 0, 1e9, "",
+       "what 100 % is, in unit, for signals that the DBC file gives in %; 0: not given"},
       {"scale", &S::scale, 0.5, 2, "",
        "true distance over reported distance; zoned calibrate estimates this key, scale_left, "
        "scale_right and track"},
@@ -288,7 +290,7 @@ const Fields<RecorderSettings>& recorder_fields() {
   using S = RecorderSettings;
   static const Fields<S> fields = {
       {"bytes", &S::bytes, 0, kMost, "bytes",
-       "how much of the newest inputs is kept, at least 2 MiB; 0: off"},
+       "how much of the newest inputs is kept, with the maps that they need, at least 2 MiB; 0: off"},
   };
   return fields;
 }

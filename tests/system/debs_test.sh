@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# usage: debs_test.sh BUILD SYSROOT [runtime]: the .deb packages in BUILD, or the runtime's alone, hold what they are
-# named after, and the programs in them need exactly the packages that own their libraries, as the unpacked packages of
-# SYSROOT say.
+# usage: debs_test.sh BUILD OWNERS [runtime]: the .deb packages in BUILD, or the runtime's alone, hold what they are
+# named after, and the programs in them need exactly the packages that own their libraries, as the list
+# OWNERS/.owners says, in lines of "library package".
 set -euo pipefail
-build=$1 sysroot=$2
+build=$1 owners=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -19,17 +19,18 @@ check() {  # PACKAGE FILE...: has these files, and depends on the owners of what
   [ -d "$work/$1/usr/bin" ] || return 0
   for library in $(readelf -d "$work/$1"/usr/bin/* | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | sort -u); do
     awk -v library="$library" '$1 == library { print $2; found = 1 } END { if (!found) print "nobody:" library }' \
-      "$sysroot/.owners"
+      "$owners/.owners"
   done | sort -u >"$work/owners"
   dpkg-deb -f "${deb[0]}" Depends | tr ',' '\n' | awk '{ print $1 }' | sort -u >"$work/depends"
   diff "$work/owners" "$work/depends" ||
     { echo "${deb[0]}: '<' owns a library that is needed, '>' is in Depends"; exit 1; }
 }
 
-check zonepack-runtime usr/bin/zoned usr/lib/systemd/system/zoned.service usr/share/zonepack/config/agilex.yaml
+check zonepack-runtime usr/bin/zoned usr/share/man/man1/zonectl.1.gz usr/share/bash-completion/completions/zoned \
+  usr/lib/systemd/system/zoned.service usr/share/zonepack/config/agilex.yaml
 if [ "${3:-}" != runtime ]; then
-  check zonepack-tools usr/bin/zonepack
-  check zonepack-dev 'usr/lib/[a-z0-9-]+/libzonepack_runtime.a' 'usr/lib/[a-z0-9-]+/cmake/zonepack/zonepackConfig.cmake' \
+  check zonepack-tools usr/bin/zonepack usr/share/man/man1/zonepack.1.gz
+  check zonepack-dev 'usr/lib/[a-z0-9_-]+/libzonepack_runtime.a' 'usr/lib/[a-z0-9_-]+/cmake/zonepack/zonepackConfig.cmake' \
     usr/include/zonepack/platform/base/result.hpp
 fi
 echo "packages: their files are there, and Depends names the owners of all libraries they need"

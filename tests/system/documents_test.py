@@ -3,7 +3,8 @@
 """usage: documents_test.py SOURCE BIN: every Markdown document names what exists.
 
 Files and headings (links, and paths that begin with a folder of the repository), options (against --help of the
-programs in BIN and of toolchains/run), and settings (against config/SETTINGS.md, which a unit test holds to the code).
+programs in BIN and of toolchains/run), settings (against config/SETTINGS.md, which a unit test holds to the code), and
+the version (CHANGELOG.md against CMakeLists.txt).
 """
 import os
 import re
@@ -133,6 +134,16 @@ def check_keys(spans, patterns, sections, fault):
                 fault(f"names the setting {span}, which does not exist")
 
 
+def check_version(root):
+    """The newest heading with a number in CHANGELOG.md is project(VERSION); only one above it may have none."""
+    version = re.search(r"project\(zonepack VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text())[1]
+    names = re.findall(r"^## (.*)$", (root / "toolchains/CHANGELOG.md").read_text(), re.MULTILINE)
+    if names[:1] == ["Unreleased"]:
+        names.pop(0)
+    if names[:1] != [version]:
+        faults.append(f"toolchains/CHANGELOG.md: the newest version is {names[:1]}, not {version} of CMakeLists.txt")
+
+
 def main():
     root, binaries = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
     options = known_options(root, binaries)
@@ -153,6 +164,7 @@ def main():
         check_options(code + spans, prose, options, commands, fault)
         check_keys(spans, patterns, sections, fault)
         count += 1
+    check_version(root)
     for text in faults:
         print(text)
     if not count:

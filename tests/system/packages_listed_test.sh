@@ -10,4 +10,5 @@ listed() {  # LIST DOCUMENT
 }
 listed packages toolchains/README.md
 listed packages-cross toolchains/README.md
+listed packages-deb toolchains/README.md
 listed packages-prove tests/README.md

@@ -37,6 +37,8 @@ if(TARGET zonepack AND TARGET zoned AND TARGET zonectl)
   add_test(NAME system/version
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/version_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR} ${PROJECT_VERSION})
+  add_test(NAME system/pages
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/pages_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
 endif()
 if(TARGET zonepack)
   add_test(NAME system/install_and_find_package

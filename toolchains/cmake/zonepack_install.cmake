@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # install(): programs, libraries, headers and the package that find_package(zonepack) reads, in the components
-# runtime (the robot), tools (the workstation) and dev: toolchains/cross/packages.sh makes a .deb of each.
+# runtime (the robot), tools (the workstation) and dev: toolchains/deb/packages.sh makes a .deb of each.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/zonepack)
 add_custom_target(installed)  # builds all that install() takes, and no tests
@@ -51,16 +51,21 @@ set(mend "include(\"${PROJECT_SOURCE_DIR}/toolchains/cmake/zonepack_installed.cm
 install(CODE "${mend}
   zonepack_mend_headers(\"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/zonepack\")"
         COMPONENT dev)
-foreach(program zoned zonectl)
-  if(TARGET ${program})
-    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
-    add_dependencies(installed ${program})
+# A program, its manual page and its completion for bash.
+function(zonepack_install_program program component)
+  if(NOT TARGET ${program})
+    return()
   endif()
-endforeach()
-if(TARGET zonepack)
-  install(TARGETS zonepack RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
-  add_dependencies(installed zonepack)
-endif()
+  install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
+  add_dependencies(installed ${program})
+  install(FILES ${PROJECT_SOURCE_DIR}/toolchains/deb/man/${program}.1
+          DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component})
+  install(FILES ${PROJECT_SOURCE_DIR}/toolchains/deb/completions/${program}
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT ${component})
+endfunction()
+zonepack_install_program(zoned runtime)
+zonepack_install_program(zonectl runtime)
+zonepack_install_program(zonepack tools)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/zonepack/config
         COMPONENT runtime PATTERN zoned.service EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/config/zoned.service DESTINATION lib/systemd/system COMPONENT runtime)

@@ -34,9 +34,13 @@ endfunction()
 # g++ 12 takes operator+ of a literal and a string for an overlapping copy (GCC bug 105651): no -Wrestrict.
 # Its vectoriser of straight code makes fused multiply-adds even with -ffp-contract=off where the target
 # has them (-march=native), so it is off.
+# A function is a section of its own, because a batch of sources is one object file: a program takes the functions it
+# calls, not the batch.
 function(zonepack_settings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off
                          $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -fno-tree-slp-vectorize> $<$<BOOL:${ZONEPACK_WERROR}>:-Werror>)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-ffunction-sections -fdata-sections>)
+  target_link_options(${target} PRIVATE $<$<CONFIG:Release>:-Wl,--gc-sections>)
   target_compile_definitions(${target} PRIVATE EIGEN_DONT_VECTORIZE)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                              $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>

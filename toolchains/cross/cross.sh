@@ -14,13 +14,7 @@ do_cross() {  # ARCH
   ready
   cross_build "$arch"
   ctest_of "$arch" "$arch units under qemu-user"
-    make_packages
-}
-
-make_packages() {  # [runtime]: of $arch, built
-  stage "packages: Debian $arch"
-  toolchains/cross/packages.sh "$arch" "$@"
-  tests/system/debs_test.sh "build/$arch" "$sysroot" "$@"
+  make_packages "build/$arch" "$arch" "$sysroot"
 }
 
 # A program that runs build/ARCH/bin/PROGRAM under qemu-user.

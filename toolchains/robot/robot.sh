@@ -88,7 +88,7 @@ prepare_robot() {  # arm64|armhf|rt-arm64
   ready
   build test --target zonepack zoned
   cross_build "$arch" zoned zonectl "${device_programs[@]}"
-  toolchains/cross/packages.sh "$arch" runtime
+  toolchains/deb/packages.sh "build/$arch" "$arch" "$sysroot" runtime
   make_guest
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// usage: hold_thread PID NAME SECONDS: one thread of a process stands still for so long, as one
-// does that waits in the kernel for a disk which does not answer; the others run on.
+// usage: hold_thread PID NAME SECONDS: one thread of a process stands still for so long, or until
+// the process is killed, as one does that waits in the kernel for a disk which does not answer; the
+// others run on.
 #include <dirent.h>
 #include <sys/ptrace.h>
 #include <sys/wait.h>
@@ -41,7 +42,11 @@ int main(int argc, char** argv) {
       ::waitpid(thread, &status, __WALL) != thread) {
     return std::perror("hold_thread: stop"), 1;
   }
-  ::usleep(static_cast<useconds_t>(std::atof(argv[3]) * 1e6));
+  // A process has ended for its parent only when its traced threads are reaped.
+  for (int turns = static_cast<int>(std::atof(argv[3]) * 100); turns > 0; --turns) {
+    if (::waitpid(thread, &status, __WALL | WNOHANG) != 0) return 0;
+    ::usleep(10'000);
+  }
   ::ptrace(PTRACE_DETACH, thread, nullptr, nullptr);
   return 0;
 }

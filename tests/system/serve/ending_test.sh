@@ -86,6 +86,24 @@ ends 1 9
 says "without waiting longer for the source of frames"
 kill "$feeding" 2>/dev/null || true
 
+# Each thread in turn stands still, as in a system call that does not return.
+while read -r thread words; do
+  rm -f run.json
+  start --json run.json
+  "$bin/hold_thread" "$zoned" "$thread" 60 &
+  holding=$!
+  sleep 0.5
+  ends 1 9
+  says "without waiting longer for $words"
+  wait "$holding" || fail "hold_thread $thread: exit code $?"
+done <<'THREADS'
+zoned-loader the thread that loads zones
+zoned-log the thread that writes --events
+zoned-feed the source of frames
+zoned-service the thread that serves clients
+zoned-control the control thread
+THREADS
+
 # The saved state's folder and the flight recorder do not follow or wait for what is not theirs.
 rm -rf state && mkdir state
 echo precious >target

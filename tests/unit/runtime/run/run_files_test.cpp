@@ -67,6 +67,27 @@ TEST_F(RunFiles, TakesHeadersCommasMarksAndNanoseconds) {
   EXPECT_THAT(read_truth(path_).error().message, HasSubstr("a Git LFS pointer"));
 }
 
+// EuRoC's ground truth: the first line names the columns, and qw comes first. 90 degrees to the
+// left.
+TEST_F(RunFiles, TakesTheOrderOfAQuaternionFromTheColumnNames) {
+  const std::string line = ",1,2,0,0.70710678,0,0,0.70710678,0,0,0,0\n";
+  const std::string lines = "1403636580838555648" + line + "1403636580888555648" + line;
+  for (const char* const names :
+       {"#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], "
+        "q_RS_x [], q_RS_y [], q_RS_z [], v_RS_R_x [m s^-1]\n",
+        "t x y z qw qx qy qz\n", "# t x y z qw qx qy qz\n"}) {
+    write(names + lines);
+    const auto truth = read_truth(path_);
+    ASSERT_TRUE(truth) << truth.error().message;
+    EXPECT_NEAR(truth->samples()[0].T_map_base.yaw_rad, 1.5707963, 1e-6) << names;
+  }
+  // Without names the robot would lie on its side.
+  write(lines);
+  EXPECT_THAT(read_truth(path_).error().message,
+              HasSubstr("seem to be qw qx qy qz, as EuRoC writes them: name the columns in a first "
+                        "line: # t x y z qw qx qy qz"));
+}
+
 TEST_F(RunFiles, CorrectionsComeInOrderOfReception) {
   write("1 5 1 0 0 1 1 1\n3 4 2 0 0 1 1 1\n2 4 3 0 0 1 1 1\n");
   const auto read = read_corrections(path_);

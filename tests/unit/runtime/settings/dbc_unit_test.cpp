@@ -53,7 +53,7 @@ TEST(DbcUnit, KnowsTheSpellingsOfPublicFiles) {
            Case{"counts/s", Kind::kTicks, 1, true},
            Case{"", Kind::kNone, 1, false},
            Case{"-", Kind::kNone, 1, false},
-           Case{"%", Kind::kUnknown, 1, false},
+           Case{"%", Kind::kPercent, 0.01, false}, Case{"Percent", Kind::kPercent, 0.01, false},
            Case{"Nm", Kind::kUnknown, 1, false},
            Case{"m/s^2", Kind::kUnknown, 1, false},
            Case{"\xC2\xB0"
@@ -98,6 +98,10 @@ TEST(DbcUnit, OfWheelsIsConverted) {
   EXPECT_DOUBLE_EQ(
       180 * metres_of(with_unit("deg/s", kSpeeds + ", unit: rpm, gear: 10, wheel_radius: 0.5")),
       3.141592653589793 / 20);
+  // 50 % of 1.6 m/s are 0.8 m/s; of 3.6 km/h, half a metre a second.
+  EXPECT_DOUBLE_EQ(50 * metres_of(with_unit("%", kSpeeds + ", full_scale: 1.6")), 0.8);
+  EXPECT_DOUBLE_EQ(50 * metres_of(with_unit("Percent", kSpeeds + ", unit: km/h, full_scale: 3.6")),
+                   0.5);
   EXPECT_DOUBLE_EQ(360 * metres_of(with_unit("", kPositions + ", unit: degrees, wheel_radius: 1")),
                    2 * 3.141592653589793);
 }
@@ -110,7 +114,9 @@ TEST(DbcUnit, ThatContradictsTheSettingsIsRefusedByName) {
   EXPECT_THAT(fault("Nm", kSpeeds),
               HasSubstr("robot.yaml:2: odometry.left: \"W.L\": the DBC file gives this signal the "
                         "unit \"Nm\"; expected a speed such as m/s, km/h"));
-  EXPECT_THAT(fault("%", kSpeeds), HasSubstr("the unit \"%\""));
+  EXPECT_THAT(fault("%", kSpeeds), HasSubstr("\"%\"; give odometry.full_scale: what 100 % is"));
+  EXPECT_THAT(fault("%/s", kSpeeds), HasSubstr("the unit \"%/s\""));
+  EXPECT_THAT(fault("m/s", kSpeeds + ", full_scale: 2"), HasSubstr("full_scale: has no effect"));
   EXPECT_THAT(fault("m", kSpeeds), HasSubstr("the unit \"m\"; expected a speed"));
   EXPECT_THAT(fault("km/h", kPositions), HasSubstr("expected a length such as m or mm"));
   EXPECT_THAT(fault("rpm", kSpeeds + ", unit: metres"), HasSubstr("the unit \"rpm\""));

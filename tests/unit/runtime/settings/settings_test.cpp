@@ -3,11 +3,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <sstream>
 #include <string>
 
+#include "runtime/settings/dbc_file.hpp"
 #include "runtime/settings/field.hpp"
 
 namespace zonepack {
@@ -218,6 +220,22 @@ TEST(Settings, WhatIsNotAYamlMappingIsAFaultNotACrash) {
   EXPECT_THAT(load_settings("/no/such/file.yaml").faults,
               ElementsAre(HasSubstr("/no/such/file.yaml: cannot be read: No such file")));
   EXPECT_FALSE(load_settings(testing::TempDir()).ok());
+}
+
+TEST(Settings, AFileThatStandsInForAnotherIsCalledWhatItIs) {
+  const std::string path = testing::TempDir() + "stand_in_" + std::to_string(::getpid());
+  const auto write = [&](const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+  };
+  write("version https://git-lfs.github.com/spec/v1\noid sha256:0\n");
+  EXPECT_THAT(load_settings(path).faults, ElementsAre(AllOf(HasSubstr("is a Git LFS pointer"),
+                                                            HasSubstr("a settings file (YAML)"))));
+  EXPECT_THAT(load_dbc(path).faults,
+              ElementsAre(AllOf(HasSubstr("is a Git LFS pointer"), HasSubstr("a DBC file"))));
+  write("\x1F\x8B\x08");
+  EXPECT_THAT(load_settings(path).faults, ElementsAre(HasSubstr("is compressed by gzip")));
+  EXPECT_THAT(load_dbc(path).faults, ElementsAre(HasSubstr("is compressed by gzip")));
+  ::unlink(path.c_str());
 }
 
 // 90,000 keys took minutes when each was compared with all before it.
