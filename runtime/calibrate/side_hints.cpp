@@ -7,12 +7,10 @@
 
 #include "runtime/calibrate/number_text.hpp"
 #include "runtime/calibrate/scale_guess.hpp"
-#include "runtime/odometry/det_math.hpp"
+#include "runtime/calibrate/side_faults.hpp"
 
 namespace zonepack {
 namespace {
-
-using Kind = ExpectedMotion::Kind;
 
 constexpr double kLeastForward_m = 0.1;     // of a window that says something about scale
 constexpr double kMostTurnPerMetre = 0.15;  // rad; more is not straight
@@ -22,7 +20,6 @@ constexpr double kSilent = 0.05;   // share of the true way that counts as none
 constexpr double kUsual = 1.33;    // tyres and calibration explain this factor, either way
 constexpr double kUsualTrack = 2;  // and skid steering this one
 constexpr double kAlike = 0.25;    // windows agree within this share
-constexpr double kMostOff = 0.05;  // of a motion that was measured with a tape
 
 bool usual(double times, double most) { return times <= most && times >= 1 / most; }
 
@@ -63,180 +60,6 @@ Median ratio_of(const std::deque<DriveWindow>& windows, bool turning,
     values.push_back(reported(window) / (turning ? window.truth.turn_rad : window.truth.forward_m));
   }
   return median_of(std::move(values));
-}
-
-std::string named(const SignalKey& key) { return "odometry." + key.key + " (" + key.name + ")"; }
-
-bool contains(const std::vector<std::string>& words, const std::string& word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-// What is wrong with two sides; signs are of the signals under their present keys.
-struct SideFaults {
-  bool swapped = false;
-  bool left_sign = false, right_sign = false;
-};
-
-std::string invert_line(const std::vector<std::string>& keys) {
-  std::string text = "  invert: [";
-  for (const std::string& key : keys) text += (text.back() == '[' ? "" : ", ") + key;
-  return text + "]";
-}
-
-// The key `invert` once the signs of `wrong` are mended.
-std::string inverted_too(const OdometrySettings& o, const std::vector<std::string>& wrong) {
-  std::vector<std::string> keys;
-  for (const SignalKey& key : signal_keys(o)) {
-    if (contains(o.invert, key.key) != contains(wrong, key.key)) keys.push_back(key.key);
-  }
-  return invert_line(keys);
-}
-
-// The lines of the section odometry that differ once the faults are mended.
-std::vector<std::string> side_lines(const OdometrySettings& o, const SideFaults& faults) {
-  std::vector<std::string> lines = {"odometry:"};
-  bool left = contains(o.invert, "left") != faults.left_sign;
-  bool right = contains(o.invert, "right") != faults.right_sign;
-  if (faults.swapped) {
-    lines.push_back("  left: " + o.right);
-    lines.push_back("  right: " + o.left);
-    std::swap(left, right);
-    if (o.scale_left != o.scale_right) {
-      lines.push_back("  scale_left: " + short_number(o.scale_right, 9));
-      lines.push_back("  scale_right: " + short_number(o.scale_left, 9));
-    }
-  }
-  if (left != contains(o.invert, "left") || right != contains(o.invert, "right")) {
-    std::vector<std::string> keys;
-    if (left) keys.emplace_back("left");
-    if (right) keys.emplace_back("right");
-    lines.push_back(invert_line(keys));
-  }
-  return lines;
-}
-
-std::string times_text(double times) { return short_number(times) + " times"; }
-
-WheelHint sign_hint(const OdometrySettings& o, const SideFaults& faults, const std::string& seen) {
-  const auto keys = signal_keys(o);
-  std::string which;
-  if (faults.left_sign) which = named(keys[0]);
-  if (faults.right_sign) which += (which.empty() ? "" : " and ") + named(keys[1]);
-  const bool both = faults.left_sign && faults.right_sign;
-  return {"sign", which + (both ? " count" : " counts") + " backwards" + seen,
-          side_lines(o, faults)};
-}
-
-WheelHint swap_hint(const OdometrySettings& o, const SideFaults& faults, const std::string& seen) {
-  return {"swapped", "left and right wheel are swapped: " + seen, side_lines(o, faults)};
-}
-
-WheelHint track_hint(const OdometrySettings& o, double times, const std::string& seen) {
-  const double track = o.wheels.geometry.track_m * o.wheels.geometry.slip_factor * times;
-  const double slip = track / o.wheels.geometry.track_m;
-  std::vector<std::string> yaml = {"odometry:", "  track: " + short_number(track)};
-  if (o.wheels.geometry.slip_factor != 1) {
-    yaml[1] = "  slip_factor: " + short_number(slip);
-  }
-  return {"track", seen + ": the track is another, or the wheels skid (slip_factor)", yaml};
-}
-
-WheelHint silent_hint(const OdometrySettings& o, const SignalKey& key, bool changes,
-                      const std::string& seen) {
-  if (changes && o.wheels.model == OdometryModel::kDifferentialPositions) {
-    return {"speed-as-position",
-            named(key) + " always comes back to where it was, " + seen +
-                ": it is a speed, and the model reads it as a position",
-            {"odometry:", "  model: wheel-speeds"}};
-  }
-  return {"silent",
-          named(key) + " stays as it is, " + seen +
-              ": the name, the bits or the id are those of something else, or the drive does not "
-              "report",
-          {}};
-}
-
-// What the moves say of the sides, apart from how far.
-std::vector<WheelHint> expected_sides(const OdometrySettings& o, Kind kind,
-                                      const std::vector<SignalMove>& moves,
-                                      const std::string& when) {
-  const double left = moves[0].moved_m, right = moves[1].moved_m;
-  SideFaults faults;
-  switch (kind) {
-    case Kind::kForward:
-    case Kind::kBackward: {
-      const double way = kind == Kind::kForward ? 1 : -1;
-      faults.left_sign = left * way < 0;
-      faults.right_sign = right * way < 0;
-      if (!faults.left_sign && !faults.right_sign) return {};
-      return {sign_hint(o, faults, when)};
-    }
-    case Kind::kLeft:
-    case Kind::kRight: {
-      const double way = kind == Kind::kLeft ? 1 : -1;
-      if (left * way < 0 && right * way > 0) return {};
-      if (left * way > 0 && right * way < 0) {
-        faults.swapped = true;
-        return {swap_hint(o, faults,
-                          "each went the other's way" + when +
-                              "; or both count backwards, which --expect forward tells")};
-      }
-      faults.left_sign = left * way > 0;
-      faults.right_sign = !faults.left_sign;
-      return {sign_hint(o, faults, ": both went the same way" + when)};
-    }
-    case Kind::kLeftWheel:
-    case Kind::kRightWheel:
-      break;
-  }
-  const bool left_turned = std::abs(left) > std::abs(right);
-  faults.swapped = left_turned != (kind == Kind::kLeftWheel);
-  (left_turned ? faults.left_sign : faults.right_sign) = (left_turned ? left : right) < 0;
-  std::vector<WheelHint> hints;
-  if (faults.swapped) {
-    hints.push_back(swap_hint(o, faults, named(moves[left_turned ? 0 : 1].key) + " went" + when));
-  }
-  if (faults.left_sign || faults.right_sign) hints.push_back(sign_hint(o, faults, when));
-  return hints;
-}
-
-// By how much the moves of two sides differ from an amount that was measured.
-std::vector<WheelHint> expected_amount(const Settings& settings, const ExpectedMotion& expected,
-                                       const std::vector<SignalMove>& moves) {
-  const OdometrySettings& o = settings.odometry;
-  const double left = std::abs(moves[0].moved_m), right = std::abs(moves[1].moved_m);
-  const WheelGeometry& geometry = o.wheels.geometry;
-  switch (expected.kind) {
-    case Kind::kForward:
-    case Kind::kBackward: {
-      const double way = (left + right) / 2;
-      const double times = way / *expected.amount;
-      if (std::abs(times - 1) <= kMostOff) return {};
-      return {scale_hint(settings, times,
-                         "the wheels report " + short_number(way) + " m of " +
-                             short_number(*expected.amount) + " m")};
-    }
-    case Kind::kLeft:
-    case Kind::kRight: {
-      const double turn = (left + right) / (geometry.track_m * geometry.slip_factor) * 180 / kPi;
-      const double times = turn / *expected.amount;
-      if (std::abs(times - 1) <= kMostOff) return {};
-      return {track_hint(o, times,
-                         "the wheels report a turn of " + short_number(turn) + " of " +
-                             short_number(*expected.amount) + " degrees")};
-    }
-    case Kind::kLeftWheel:
-    case Kind::kRightWheel:
-      break;
-  }
-  const double way = std::max(left, right);
-  const double true_way = *expected.amount * 2 * kPi * o.wheel_radius_m;
-  const double times = way / true_way;
-  if (std::abs(times - 1) <= kMostOff) return {};
-  return {scale_hint(settings, times,
-                     "the wheel reports " + short_number(way) + " m of " + short_number(true_way) +
-                         " m (" + short_number(*expected.amount) + " turns at wheel_radius " +
-                         short_number(o.wheel_radius_m) + ")")};
 }
 
 // The part of side_hints() that a gyroscope allows, which knows turns only.
@@ -406,72 +229,6 @@ std::vector<WheelHint> twist_hints(const Settings& settings, const WheelEvidence
     hints.insert(hints.begin(), {"sign",
                                  text + " counts backwards against " + evidence.reference,
                                  {"odometry:", inverted_too(o, wrong)}});
-  }
-  return hints;
-}
-
-std::vector<WheelHint> expectation_hints(const Settings& settings, const ExpectedMotion& expected,
-                                         const std::vector<SignalMove>& moves) {
-  const OdometrySettings& o = settings.odometry;
-  const OdometryModel model = o.wheels.model;
-  const std::string when = " (expected: " + instruction_text(expected) + ")";
-  const bool one_wheel = expected.kind == Kind::kLeftWheel || expected.kind == Kind::kRightWheel;
-  std::vector<WheelHint> hints;
-  bool any = false;
-  for (const SignalMove& move : moves) any = any || move.moved;
-  std::vector<std::string> wrong;
-  for (std::size_t i = 0; i < moves.size(); ++i) {
-    const int sign = expected_sign(model, expected.kind, i);
-    if (sign == 0) continue;
-    if (!moves[i].moved && !(one_wheel && any)) {
-      hints.push_back(
-          {"silent",
-           named(moves[i].key) + (moves[i].seen ? " did not move" : " never came") + when,
-           {}});
-    } else if (moves[i].moved_m * sign < 0) {
-      wrong.push_back(moves[i].key.key);
-    }
-  }
-  if (!hints.empty()) return hints;
-  if (has_sides(model)) {
-    hints = expected_sides(o, expected.kind, moves, when);
-    if (expected.amount) {
-      for (WheelHint& hint : expected_amount(settings, expected, moves)) {
-        hints.push_back(std::move(hint));
-      }
-    }
-    return hints;
-  }
-  if (!wrong.empty()) {
-    std::string text;
-    for (const std::string& key : wrong) text += (text.empty() ? "odometry." : ", odometry.") + key;
-    hints.push_back(
-        {"sign", text + " counts backwards" + when, {"odometry:", inverted_too(o, wrong)}});
-  }
-  if (!expected.amount) return hints;
-  const bool turn = expected.kind == Kind::kLeft || expected.kind == Kind::kRight;
-  if (model == OdometryModel::kTwist) {
-    const double true_amount = turn ? *expected.amount * kPi / 180 : *expected.amount;
-    const double times = std::abs(moves[turn ? 1 : 0].moved_m) / true_amount;
-    if (std::abs(times - 1) > kMostOff) {
-      hints.push_back(twist_hint(
-          settings, turn, times,
-          named(moves[turn ? 1 : 0].key) + " reports " + times_text(times) + " what was done"));
-    }
-  } else if (!turn) {
-    double way = 0;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < moves.size(); ++i) {
-      if (expected_sign(model, expected.kind, i) == 0) continue;
-      way += std::abs(moves[i].moved_m);
-      ++count;
-    }
-    if (count == 0) return hints;
-    const double times = way / static_cast<double>(count) / *expected.amount;
-    if (std::abs(times - 1) > kMostOff) {
-      hints.push_back(
-          scale_hint(settings, times, "the wheels report " + times_text(times) + " what was done"));
-    }
   }
   return hints;
 }

@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "platform/base/json_text.hpp"
+#include "runtime/calibrate/expectation_hints.hpp"
 #include "runtime/calibrate/number_text.hpp"
 #include "runtime/calibrate/scale_guess.hpp"
+#include "runtime/calibrate/side_faults.hpp"
 #include "runtime/calibrate/side_hints.hpp"
 
 namespace zonepack {
@@ -40,8 +42,6 @@ const char* other_reading(OdometryModel model) {
   }
   return nullptr;
 }
-
-std::string named(const SignalKey& key) { return "odometry." + key.key + " (" + key.name + ")"; }
 
 // The other of "left" and "right" inside a name, in the same letters; empty when it has neither.
 std::string other_side(std::string name) {
@@ -111,22 +111,13 @@ std::optional<WheelHint> opposite(const Settings& settings, const WheelEvidence&
   const double least = std::min(std::abs(left), std::abs(right));
   if (least < kLeastWay_m || std::abs(left + right) > kUnequal * least) return std::nullopt;
   const std::string wrong = left < 0 ? "left" : "right";
-  std::vector<std::string> inverted = o.invert;
-  const auto at = std::find(inverted.begin(), inverted.end(), wrong);
-  if (at != inverted.end()) {
-    inverted.erase(at);
-  } else {
-    inverted.push_back(wrong);
-  }
-  std::string line = "  invert: [";
-  for (const std::string& key : inverted) line += (line.back() == '[' ? "" : ", ") + key;
   return WheelHint{"sign",
                    "left and right went opposite ways, " + decimals_text(left, 1) + " and " +
                        decimals_text(right, 1) +
                        " m: unless the robot only turned on the spot, one counts backwards; if it "
                        "drove forward, it is odometry." +
                        wrong,
-                   {"odometry:", line + "]"}};
+                   {"odometry:", inverted_too(o, {wrong})}};
 }
 
 std::optional<WheelHint> too_fast(const Settings& settings, const WheelEvidence& evidence) {

@@ -209,6 +209,7 @@ Outcome<void> listen_and_report(const ListenArguments& arguments) {
   Failures failed;
   failed.add(
       write_json(arguments.json, listen_json(picture, arguments.feed.source.name, mismatch)));
+  if (!std::cout) failed.add(failure("standard output: cannot be written", ErrorCode::kIo));
   if (!session->heard_odometry() && !session->stopped()) {
     failed.add(failure(mismatch.empty() ? "no signal of odometry could be read" : mismatch));
   } else if (!mismatch.empty()) {

@@ -162,23 +162,22 @@ void add_listen(CLI::App& app, zonepack::ListenArguments& arguments, int& exit_c
       ->type_name("S");
   listen.add_flag("--once", arguments.once,
                   "show one picture only, after 2 s or --duration; of a log, at its end");
-  add_parsed(listen, "--expect", "MOTION",
-             "what is done with the robot meanwhile, to be compared: forward[=METRES], "
-             "backward[=METRES], left[=DEGREES] and right[=DEGREES] (turning on the spot), "
-             "left-wheel[=TURNS] and right-wheel[=TURNS] (one wheel, by hand)",
-             "forward, backward, left, right, left-wheel or right-wheel, or one of these and "
-             "=AMOUNT over 0",
-             [&arguments](const std::string& text) {
-               arguments.expected = zonepack::parse_expected_motion(text);
-               return arguments.expected.has_value();
-             });
-  CLI::Option* const truth =
-      add_file(listen, "--truth", arguments.truth,
-               "true poses of a log, to compare the wheels with: t x y z qx qy qz qw");
+  add_parsed(
+      listen, "--expect", "MOTION",
+      "what is done with the robot meanwhile; exit with 1 if the wheels do not: forward[=METRES], "
+      "backward[=METRES], left[=DEGREES] and right[=DEGREES] (turning on the spot), "
+      "left-wheel[=TURNS] and right-wheel[=TURNS] (one wheel, by hand)",
+      "forward, backward, left, right, left-wheel or right-wheel, or one of these and "
+      "=AMOUNT over 0",
+      [&arguments](const std::string& text) {
+        arguments.expected = zonepack::parse_expected_motion(text);
+        return arguments.expected.has_value();
+      });
+  add_file(listen, "--truth", arguments.truth,
+           "true poses of a log, to compare the wheels with: t x y z qx qy qz qw");
   add_file(listen, "--corrections", arguments.corrections,
            "the same with the poses of a localizer: stamp received x y yaw sigma_x sigma_y "
-           "sigma_yaw")
-      ->excludes(truth);
+           "sigma_yaw");
   add_file(listen, "--json", arguments.json,
            "write the last picture as JSON ('-': standard output, and text to standard error)");
   listen.footer(
@@ -186,15 +185,20 @@ void add_listen(CLI::App& app, zonepack::ListenArguments& arguments, int& exit_c
       "  zoned listen --config robot.yaml --can socketcan:can0\n"
       "  zoned listen --config robot.yaml --can socketcan:can0 --expect forward=1 --duration 10\n"
       "  zoned listen --config robot.yaml --can socketcan:can0 --expect left-wheel=1\n"
-      "  zoned listen --config robot.yaml --can drive.log --corrections fixes.txt --json -\n"
-      "It exits with 1 when no frame that odometry reads came, or the robot did not move as\n"
-      "expected.");
-  listen.callback([&] { exit_code = zonepack::run_listen(arguments); });
+      "  zoned listen --config robot.yaml --can drive.log --corrections fixes.txt --json -");
+  listen.callback([&] {
+    if (!arguments.truth.empty() && !arguments.corrections.empty()) {
+      throw CLI::ExcludesError("--truth", "--corrections");
+    }
+    exit_code = zonepack::run_listen(arguments);
+  });
 }
 
 void add_calibrate(CLI::App& app, zonepack::CalibrateArguments& arguments, int& exit_code) {
   CLI::App& calibrate = *app.add_subcommand(
-      "calibrate", "estimates wheel scale and track from a drive whose true path is known");
+      "calibrate",
+      "estimates wheel scale and track from a drive whose true path is known, or says "
+      "which setting does not fit the wheels");
   add_file(calibrate, "--config", arguments.config, "settings of the robot (YAML)")->required();
   calibrate.add_option("--can", arguments.can, "CAN log of the drive")
       ->type_name("LOG")
@@ -205,8 +209,7 @@ void add_calibrate(CLI::App& app, zonepack::CalibrateArguments& arguments, int& 
   calibrate.footer(
       "Examples:\n"
       "  zoned calibrate --config robot.yaml --can drive.log --truth path.txt\n"
-      "  zoned calibrate --config robot.yaml --can drive.log --truth path.txt --json -\n"
-      "Where the wheels do not fit the settings, it says which setting is probably wrong.");
+      "  zoned calibrate --config robot.yaml --can drive.log --truth path.txt --json -");
   calibrate.callback([&] { exit_code = zonepack::run_calibrate(arguments); });
 }
 

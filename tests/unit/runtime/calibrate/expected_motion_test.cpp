@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runtime/calibrate/side_hints.hpp"
+#include "runtime/calibrate/expectation_hints.hpp"
 
 namespace zonepack {
 namespace {
