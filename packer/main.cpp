@@ -13,6 +13,7 @@
 #include "packer/commands/prune.hpp"
 #include "packer/commands/report.hpp"
 #include "packer/commands/verify.hpp"
+#include "platform/command_line/command_line.hpp"
 #include "platform/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/pack_format/file/pack_file.hpp"
@@ -28,6 +29,7 @@ int main(int argc, char** argv) {
   app.set_version_flag(
       "--version", zonepack::version_line(
                        "zonepack", {{"pack format", zonepack::kPackMajor, zonepack::kPackMinor}}));
+  app.fallthrough();             // --version, after a subcommand as well
   app.require_subcommand(0, 1);  // so that CLI11 names a word it does not know
   app.callback([&app] {
     if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
@@ -42,8 +44,12 @@ int main(int argc, char** argv) {
   zonepack::packer::add_verify_command(app, exit_code);
   zonepack::packer::add_prune_command(app, exit_code);
   zonepack::packer::add_report_command(app, exit_code);
+  zonepack::add_examples(app, {"zonepack outline --db map.db --out outline",
+                               "zonepack check-zones zones.geojson --db map.db --out preview.html",
+                               "zonepack build --db map.db --zones zones.geojson --out map",
+                               "zonepack plan map --budget 8MiB"});
   try {
-    app.parse(argc, argv);
+    zonepack::parse_command_line(app, argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const std::exception& error) {

@@ -23,7 +23,11 @@ namespace zonepack {
 class AtomicFile {
  public:
   // Opens the part next to `path`, or the file to write in place; the folder must exist.
+  // A FIFO is opened only if somebody reads it within a second (ENXIO).
   static Result<AtomicFile> create(std::string path);
+
+  // The process's standard output, written in place.
+  static Result<AtomicFile> standard_output();
 
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&&) = delete;

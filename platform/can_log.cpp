@@ -2,9 +2,9 @@
 #include "platform/can_log.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <span>
+#include <utility>
 
 #include "platform/base/file_kind.hpp"
 
@@ -21,7 +21,7 @@ CanLogReader::CanLogReader(std::string path, std::string interface)
 
 CanLogReader::~CanLogReader() = default;
 
-bool CanLogReader::start() {
+Result<void> CanLogReader::start() {
   summary_ = {};
   summary_.interface = interface_;
   end_ = false;
@@ -30,16 +30,20 @@ bool CanLogReader::start() {
   added_ns_ = 0;
   rhythm_count_ = 0;
   asc_lines_ = {};
-  file_.reset(std::fopen(path_.c_str(), "rb"));
-  if (file_) refill();
-  return file_ != nullptr;
+  piece_ = {};
+  file_.reset();
+  Result<ReadStream> file = ReadStream::open(path_);
+  if (!file) return file.error();
+  file_.emplace(std::move(*file));
+  refill();
+  return {};
 }
 
 Result<void> CanLogReader::open() {
-  if (!start()) return {errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kIo, errno};
+  if (const auto started = start(); !started) return started;
   if (count_ == 0 && !other_.empty() && !several_others_) {
     interface_ = other_;
-    start();
+    if (const auto again = start(); !again) return again;
   }
   if (count_ == 0 && summary_.read_error != 0) return {ErrorCode::kIo, summary_.read_error};
   if (count_ == 0) return {ErrorCode::kBadStructure, static_cast<std::int64_t>(summary_.lines)};
@@ -101,15 +105,27 @@ void CanLogReader::note(std::uint64_t line, std::string_view what, std::string_v
   summary_.faults.push_back({line, std::move(message)});
 }
 
+// -1 at the end of the file, or where it cannot be read any further.
+int CanLogReader::read_byte() {
+  if (piece_.empty()) {
+    const Result<std::span<const char>> next = file_->next();
+    if (!next) summary_.read_error = static_cast<int>(next.error().detail);
+    if (!next || next->empty()) return -1;
+    piece_ = *next;
+  }
+  const char byte = piece_.front();
+  piece_ = piece_.subspan(1);
+  return static_cast<unsigned char>(byte);
+}
+
 // False at the end of the file. A line longer than the buffer is cut, which makes it a broken line.
 bool CanLogReader::read_line(std::string_view& line) {
   std::size_t size = 0;
   int c = 0;
-  while ((c = std::getc(file_.get())) != EOF && c != '\n') {
+  while ((c = read_byte()) >= 0 && c != '\n') {
     if (size < line_.size()) line_[size++] = static_cast<char>(c);
   }
-  if (c == EOF && std::ferror(file_.get()) != 0) summary_.read_error = errno;
-  if (c == EOF && size == 0) return false;
+  if (c < 0 && size == 0) return false;
   line = {line_.data(), size};
   ++summary_.lines;
   return true;

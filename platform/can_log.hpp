@@ -4,9 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "platform/can_frame_source.hpp"
 #include "platform/can_log_asc.hpp"
 #include "platform/can_log_line.hpp"
+#include "platform/read_stream.hpp"
 
 namespace zonepack {
 
@@ -46,8 +46,9 @@ struct CanLogSummary {
   std::vector<ClockStep> steps;  // the first kMostFaults of clock_steps
 };
 
-// Reads a candump recording (formats: can_log_line.hpp) or a Vector ASC file from front to back in
-// bounded memory.
+// Reads a candump recording (formats: can_log_line.hpp) or a Vector ASC file from front to back,
+// whatever its length: 64 frames ahead, in pieces that leave the page cache once they are read
+// (read_stream.hpp).
 //
 // A broken line is counted, recorded with its number and skipped; only a file without a single
 // valid frame is an error. The order of the file is the order of arrival: frames whose stamp steps
@@ -94,9 +95,6 @@ class CanLogReader final : public CanFrameSource {
     std::uint64_t dropped = 0;
     std::uint64_t line = 0;
   };
-  struct Closer {
-    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
-  };
   struct Rhythm {  // of the frames of an id, on the clock of the first frame
     CanId id;
     std::int64_t last_ns = 0;
@@ -106,12 +104,13 @@ class CanLogReader final : public CanFrameSource {
   static constexpr std::size_t kAhead = 64;
   static constexpr std::size_t kLongestLine = 1024;
 
+  int read_byte();
   bool read_line(std::string_view& line);
   std::optional<Item> read_frame();
   void refill();
   void note(std::uint64_t line, std::string_view what, std::string_view text);
   void name_other(std::string_view name);
-  bool start();
+  Result<void> start();
   bool stamps_are_differences() const noexcept;
   bool is_stray(const Item& item) const noexcept;
   bool clock_was_set_before(const Item& item) const noexcept;
@@ -120,7 +119,8 @@ class CanLogReader final : public CanFrameSource {
 
   std::string path_;
   std::string interface_;
-  std::unique_ptr<std::FILE, Closer> file_;
+  std::optional<ReadStream> file_;
+  std::span<const char> piece_;  // of the file, not yet taken
   std::array<char, kLongestLine> line_{};
   std::array<Item, kAhead> ahead_{};  // a ring: frames read but not yet returned
   std::size_t first_ = 0;

@@ -30,6 +30,10 @@ class Descriptor {
   int fd_ = -1;
 };
 
+// Whether a write of a line (below PIPE_BUF) would not wait: false for a pipe that nobody empties
+// and for a terminal that was halted. True where a write would fail at once.
+bool takes_a_line_now(int fd) noexcept;
+
 // Writes all of the bytes, in as many pieces as it takes. kIo with errno.
 //
 // Real-time: may block; not for the control thread.

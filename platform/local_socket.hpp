@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -75,7 +76,10 @@ class LocalListener {
 
   // kExists: another process listens there, or it is not a socket; a socket without a listener is
   // replaced. kTooLarge: the path is longer than kMostPath bytes.
-  static Result<LocalListener> listen(const std::string& path, unsigned mode);
+  // group: the number of the file's group, where it is not the process's; kIo with EPERM when the
+  // process may not give the file to it.
+  static Result<LocalListener> listen(const std::string& path, unsigned mode,
+                                      std::optional<std::uint32_t> group = std::nullopt);
 
   LocalListener(LocalListener&& other) noexcept
       : fd_(std::move(other.fd_)), path_(std::exchange(other.path_, {})) {}

@@ -47,7 +47,11 @@ class Thread {
 // Whether the calling thread runs under SCHED_FIFO.
 bool thread_is_realtime() noexcept;
 
-// Locks every page that the process has now, but no later one, into memory.
+// Makes present and locks, of what the process has mapped now, all that a control thread touches:
+// memory that can be written to, the program, and the C and mathematics libraries. Other libraries'
+// code and constants are not locked, 3 MiB of zoned: such a thread neither allocates nor throws, so
+// it calls none of them; the program must be linked with -z now, or it would look up symbols there.
+// What is mapped later is not locked.
 Result<void> lock_memory_now() noexcept;
 void unlock_memory() noexcept;
 

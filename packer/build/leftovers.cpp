@@ -12,6 +12,7 @@
 
 #include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
+#include "platform/base/file_kind.hpp"
 #include "platform/storage.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 
@@ -19,12 +20,20 @@ namespace zonepack::packer {
 namespace {
 
 std::set<std::string> named_packs(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(folder, ignored)) {
+    throw std::runtime_error(
+        folder.string() + ": is a file; expected the folder of a map that 'zonepack build' wrote");
+  }
   const std::string path = (folder / kManifestName).string();
   const Result<std::vector<std::byte>> file = read_file(path, kMaxManifestFileBytes);
   const Result<const fb::Manifest*> manifest =
       file ? check_manifest(*file) : Result<const fb::Manifest*>(file.error());
   if (!manifest) {
-    throw std::runtime_error(path + ": " + reason_text(manifest.error()) +
+    const std::string_view magic(reinterpret_cast<const char*>(kManifestMagic.data()),
+                                 kManifestMagic.size());
+    const std::string kind = misplaced_at(path, magic);
+    throw std::runtime_error(path + ": " + (kind.empty() ? reason_text(manifest.error()) : kind) +
                              "; without a whole manifest every pack would be removed, so none is: "
                              "build the map again or copy its manifest here");
   }

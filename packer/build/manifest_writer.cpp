@@ -5,34 +5,36 @@
 
 #include <cstring>
 #include <limits>
-#include <stdexcept>
 
+#include "packer/encode/format_limit.hpp"
 #include "platform/base/require.hpp"
 #include "platform/version/version.hpp"
+#include "runtime/pack_format/file/zone_name.hpp"
 
 namespace zonepack::packer {
 namespace {
 
-void check_limits(const ZonePlan& plan) {
-  const auto refuse = [](const std::string& what, std::size_t count, std::size_t limit) {
-    throw std::runtime_error(what + ": " + std::to_string(count) + ", the format holds at most " +
-                             std::to_string(limit));
-  };
-  if (plan.zones.size() > kMaxZones) refuse("zones", plan.zones.size(), kMaxZones);
-  if (plan.portals.size() > kMaxPortals) refuse("portals", plan.portals.size(), kMaxPortals);
+void check_limits(const ZonePlan& plan, const std::vector<PackSummary>& packs) {
+  require_within(LimitId::kZones, plan.zones.size());
+  require_within(LimitId::kPortals, plan.portals.size());
   const std::vector<std::size_t> portals = portals_per_zone(plan);
   for (std::size_t i = 0; i < plan.zones.size(); ++i) {
     const PlannedZone& zone = plan.zones[i];
-    std::size_t vertices = zone.polygon.outer.size();
+    const std::string what = "zone " + zone.name;
+    std::uint64_t vertices = zone.polygon.outer.size();
     for (const Ring& hole : zone.polygon.holes) vertices += hole.size();
-    if (vertices > kMaxVerticesPerZone) {
-      refuse("zone " + zone.name + ": vertices", vertices, kMaxVerticesPerZone);
-    }
-    if (portals[i] > kMaxPortalsPerZone) {
-      refuse("zone " + zone.name + ": portals", portals[i], kMaxPortalsPerZone);
-    }
+    std::uint64_t chunks = 0;
+    for (const PackSummary::Payload& payload : packs[i].payloads) chunks += payload.chunks;
+    require_within(LimitId::kNameBytes, zone.name.size(), what);
+    require_within(LimitId::kVerticesOfZone, vertices, what);
+    require_within(LimitId::kPortalsOfZone, portals[i], what);
+    require_within(LimitId::kSignaturesOfZone, packs[i].signatures, what);
+    require_within(LimitId::kChunksOfPack, chunks, what);
   }
 }
+
+// A text of the source that is not fit to be printed is as good as none.
+std::string plain_or_nothing(const std::string& text) { return is_plain_text(text) ? text : ""; }
 
 using Builder = flatbuffers::FlatBufferBuilder;
 
@@ -89,7 +91,7 @@ flatbuffers::Offset<fb::Zone> zone_table(Builder& builder, const PlannedZone& zo
 
 Bytes manifest_bytes(const ManifestContent& content) {
   const ZonePlan& plan = *content.plan;
-  check_limits(plan);
+  check_limits(plan, *content.packs);
   Builder builder(1 << 16);
   std::vector<flatbuffers::Offset<fb::Zone>> zones;
   for (std::size_t i = 0; i < plan.zones.size(); ++i) {
@@ -103,10 +105,11 @@ Bytes manifest_bytes(const ManifestContent& content) {
                                        portal.zone_b, &p, &q));
   }
   const auto provenance = fb::CreateProvenance(
-      builder, text(builder, content.source_kind), text(builder, content.source_version),
-      builder.CreateString(version()), static_cast<std::uint32_t>(LZ4_versionNumber()),
-      text(builder, content.options), content.source_feature_count, content.source_bytes,
-      text(builder, content.detector));
+      builder, text(builder, content.source_kind),
+      text(builder, plain_or_nothing(content.source_version)), builder.CreateString(version()),
+      static_cast<std::uint32_t>(LZ4_versionNumber()), text(builder, content.options),
+      content.source_feature_count, content.source_bytes,
+      text(builder, plain_or_nothing(content.detector)));
   const auto lineage = digest(builder, content.lineage);
   const auto frame = builder.CreateString("map");
   const auto zone_vector = builder.CreateVector(zones);
@@ -115,11 +118,7 @@ Bytes manifest_bytes(const ManifestContent& content) {
   fb::FinishManifestBuffer(
       builder, fb::CreateManifest(builder, lineage, frame, static_cast<std::uint32_t>(kSlotBytes),
                                   content.payload, zone_vector, portal_vector, edges, provenance));
-  if (builder.GetSize() > kMaxManifestBytes) {
-    throw std::runtime_error("the manifest would take " + std::to_string(builder.GetSize()) +
-                             " bytes, the format holds at most " +
-                             std::to_string(kMaxManifestBytes));
-  }
+  require_within(LimitId::kManifestBytes, builder.GetSize());
   ManifestHeader header;
   header.size = builder.GetSize();
   Bytes file(sizeof header + header.size + sizeof(ManifestTail));

@@ -103,7 +103,8 @@ void MapBuilder::outline() {
   if (options_.unlinked == UnlinkedPolicy::kError && outline.unlinked() > 0) {
     throw std::runtime_error(
         options_.database.string() + ": " + std::to_string(outline.unlinked()) +
-        " signatures have no optimised pose; open the database with RTAB-Map and close it cleanly, "
+        (outline.unlinked() == 1 ? " signature has" : " signatures have") +
+        " no optimised pose; open the database with RTAB-Map and close it cleanly, "
         "or pack with --unlinked odometry or drop");
   }
 }
@@ -141,6 +142,9 @@ void MapBuilder::place() {
   }
   Partition partition = packer::partition(zones_.plan.zones, places_, options_.orphans);
   summary_.orphans = partition.orphans;
+  const std::vector<OrphanGroup> groups = group_orphans(partition.orphans);
+  if (!groups.empty()) summary_.orphans_text = groups_text(groups, zones_.plan.zones);
+  summary_.misdrawn = find_misdrawn(zones_.plan.zones, places_, partition.orphans.size());
   if (options_.orphans == OrphanPolicy::kDrop) {
     summary_.orphans_dropped = partition.orphans.size();
   }

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "packer/build/progress.hpp"
 #include "packer/encode/pack_writer.hpp"
 #include "packer/sources/damage.hpp"
+#include "packer/zones/orphans.hpp"
 #include "packer/zones/partition.hpp"
 #include "packer/zones/split.hpp"
 #include "packer/zones/zone_file.hpp"
@@ -45,6 +47,8 @@ struct BuildSummary {
   std::map<std::int32_t, std::size_t> unconnected_by_session;  // of these, left out with kOdometry
   std::size_t unlinked_dropped = 0;
   std::vector<Orphan> orphans;
+  std::string orphans_text;  // near which zones they stand
+  std::optional<Misdrawn> misdrawn;
   std::size_t orphans_dropped = 0;
   std::vector<Damage> damages;  // of the signatures that were skipped
   std::vector<SplitZone> split;

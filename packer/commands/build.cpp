@@ -7,9 +7,16 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
+#include "packer/build/leftovers.hpp"
 #include "packer/build/map_builder.hpp"
 #include "packer/console/command_line.hpp"
+#include "packer/console/output_path.hpp"
+#include "packer/console/words.hpp"
+#include "platform/command_line/command_line.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -70,7 +77,8 @@ void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostr
   std::size_t unlinked = 0;
   for (const auto& [session, count] : unlinked_by_session) unlinked += count;
   if (unlinked > 0) {
-    out << "WARNING: " << unlinked << " signatures have no optimised pose (";
+    out << "WARNING: " << plural(unlinked, "signature has", "signatures have")
+        << " no optimised pose (";
     const char* separator = "";
     for (const auto& [session, count] : unlinked_by_session) {
       out << separator << "session " << session << ": " << count;
@@ -78,28 +86,34 @@ void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostr
     }
     out << "); "
         << (options.unlinked == UnlinkedPolicy::kDrop
-                ? "they were left out (--unlinked drop)"
-                : "they were placed by odometry, which may be far off (--unlinked odometry)")
+                ? "left out (--unlinked drop)"
+                : "placed by odometry, which may be far off (--unlinked odometry)")
         << "\n";
   }
   if (options.unlinked != UnlinkedPolicy::kDrop && s.unlinked_dropped > unconnected) {
-    out << "WARNING: " << s.unlinked_dropped - unconnected
-        << " signatures have no pose at all and were left out\n";
+    out << "WARNING: "
+        << plural(s.unlinked_dropped - unconnected, "signature has", "signatures have")
+        << " no pose at all; left out\n";
   }
   if (!s.orphans.empty()) {
     const Orphan& first = s.orphans.front();
-    out << "warning: " << s.orphans.size() << " signatures stand in no zone ("
+    out << "warning: " << plural(s.orphans.size(), "signature stands", "signatures stand")
+        << " in no zone (" << s.orphans_text << "; "
         << (options.orphans == OrphanPolicy::kDrop ? "left out" : "given to the nearest")
         << "), such as " << first.id << " at " << point_text(first.p_map) << ", "
         << number_text(first.distance_m) << " m from the nearest zone\n";
   }
+  if (s.misdrawn) {
+    out << "WARNING: " << options.zones.string() << ": "
+        << misdrawn_text(*s.misdrawn, s.orphans.size(), s.signatures + s.orphans_dropped) << "\n";
+  }
   for (const SplitZone& split : s.split) {
-    out << "zone " << split.name << " was split into " << split.parts << " parts\n";
+    out << "zone " << split.name << " was split into " << plural(split.parts, "part") << "\n";
     if (split.narrow_limit > 0) {
       out << "warning: some parts of zone " << split.name
           << " are narrower than 1 cm, because signatures stand that close and --max-zone-bytes is "
              "that low; a robot hardly enters them. About "
-          << split.narrow_limit << " bytes would do without\n";
+          << size_text(split.narrow_limit) << " would do without\n";
     }
   }
   for (const Damage& d : s.damages) {
@@ -111,20 +125,47 @@ void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostr
   }
 }
 
+// None while another build writes there: the map itself is in place by now.
+std::vector<Leftover> leftovers_of(const std::filesystem::path& folder) {
+  try {
+    return find_leftovers(folder);
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
+ByteCount bytes_of(const std::vector<Leftover>& leftovers) {
+  ByteCount bytes = 0;
+  for (const Leftover& leftover : leftovers) bytes += leftover.bytes;
+  return bytes;
+}
+
 void run_build(const BuildArguments& arguments, std::ostream& text) {
   const BuildOptions& options = arguments.options;
+  require_writable_folder(options.out, "--out");
+  arguments.json.require_writable();
   Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
   const BuildSummary s = build_map(options, progress);
   print_trouble(s, options, std::cerr);
-  text << options.out.string() << ": " << s.signatures << " signatures, " << s.features
-       << " features in " << s.packs.size() << " zones" << (s.unchanged ? " (unchanged)" : "")
-       << "\n"
-       << std::fixed << std::setprecision(3) << "  charged " << s.charged_bytes << " bytes ("
-       << ratio(s.charged_bytes, s.feature_row_bytes) << " of the database's feature rows), stored "
-       << s.stored_bytes << " (" << ratio(s.stored_bytes, s.source_bytes)
-       << " of the database's own)\n"
-       << "  smallest budget " << s.smallest.bytes << " bytes\n";
-  arguments.json.write(to_json(s, options.out));
+  text << options.out.string() << ": " << plural(s.signatures, "signature") << ", "
+       << plural(s.features, "feature") << " in " << plural(s.packs.size(), "zone")
+       << (s.unchanged ? " (unchanged)" : "") << "\n"
+       << std::fixed << std::setprecision(3) << "  charged " << size_text(s.charged_bytes) << ", "
+       << ratio(s.charged_bytes, s.feature_row_bytes) << " of the database's feature rows; stored "
+       << size_text(s.stored_bytes) << ", " << ratio(s.stored_bytes, s.source_bytes)
+       << " of the database's own\n"
+       << "  smallest budget " << size_text(s.smallest.bytes) << "\n";
+  const std::vector<Leftover> leftovers = leftovers_of(options.out);
+  if (!leftovers.empty()) {
+    text << "  " << plural(leftovers.size(), "file") << " of earlier builds, "
+         << size_text(bytes_of(leftovers)) << ", in no use by this map; to remove "
+         << (leftovers.size() == 1 ? "it" : "them") << ", once no robot needs the old map: "
+         << "zonepack prune " << shell_word(options.out.string()) << "\n";
+  }
+  nlohmann::ordered_json json = to_json(s, options.out);
+  json["prunable_files"] = leftovers.size();
+  json["prunable_bytes"] = bytes_of(leftovers);
+  arguments.json.write(json);
 }
 
 }  // namespace
@@ -173,6 +214,11 @@ void add_build_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 256))
       ->type_name("N");
   arguments->json.add_option(*command);
+  add_examples(*command, {"zonepack build --db map.db --zones zones.geojson --out map",
+                          "zonepack build --db map.db --zones zones.geojson --out map "
+                          "--max-zone-bytes 2MiB --payload features,scan,grid",
+                          "zonepack build --db map.db --zones zones.geojson --out map --orphans "
+                          "error --damaged skip --json -"});
   command->callback([arguments, &exit_code] {
     run_build(*arguments, arguments->json.text());
     exit_code = 0;

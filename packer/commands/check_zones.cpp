@@ -2,43 +2,73 @@
 #include "packer/commands/check_zones.hpp"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <memory>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
+#include "packer/commands/report.hpp"
 #include "packer/console/command_line.hpp"
+#include "packer/console/output_path.hpp"
+#include "packer/console/text_table.hpp"
+#include "packer/console/words.hpp"
+#include "packer/outline/map_drawing.hpp"
+#include "packer/preview/zones_page.hpp"
 #include "packer/sources/rtabmap_database.hpp"
+#include "packer/zones/orphans.hpp"
 #include "packer/zones/partition.hpp"
-#include "platform/base/utf8.hpp"
+#include "platform/command_line/command_line.hpp"
+#include "runtime/report/format.hpp"
+#include "runtime/report/report.hpp"
 
 namespace zonepack::packer {
 namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kOrphansPrinted = 20;
+constexpr std::size_t kGroupsPrinted = 20;
 
 struct SignatureCounts {
   Partition partition;
-  std::size_t linked = 0, unlinked = 0;
+  std::vector<SignaturePlace> places;  // of the linked ones
+  std::size_t unlinked = 0;
+  std::optional<Misdrawn> misdrawn;
 };
 
-SignatureCounts count_signatures(const std::filesystem::path& db, const ZonePlan& plan) {
-  const RtabmapDatabase database(db);
-  require_signatures(database.outline(), db.string());
+SignatureCounts count_signatures(const MapOutline& outline, const ZonePlan& plan) {
   SignatureCounts counts;
-  std::vector<SignaturePlace> places;
-  for (const NodeOutline& node : database.outline().nodes) {
+  for (const NodeOutline& node : outline.nodes) {
     if (!node.pose) continue;
     const Transform& T = *node.pose;
-    places.push_back({node.id, {T[3], T[7]}, T[11]});
+    counts.places.push_back({node.id, {T[3], T[7]}, T[11]});
   }
-  counts.linked = places.size();
-  counts.unlinked = database.outline().nodes.size() - places.size();
-  counts.partition = partition(plan.zones, places, OrphanPolicy::kDrop);
+  counts.unlinked = outline.nodes.size() - counts.places.size();
+  if (plan.zones.empty()) return counts;
+  counts.partition = partition(plan.zones, counts.places, OrphanPolicy::kDrop);
+  counts.misdrawn = find_misdrawn(plan.zones, counts.places, counts.partition.orphans.size());
   return counts;
+}
+
+// What --db adds.
+struct Source {
+  SignatureCounts counts;
+  MapDrawing ground;  // only when a picture is wanted
+};
+
+Source read_source(const CheckZonesOptions& options, const ZonePlan& plan) {
+  RtabmapDatabase database(*options.db);
+  require_signatures(database.outline(), options.db->string());
+  Source source{count_signatures(database.outline(), plan), {}};
+  if (options.out.empty()) return source;
+  try {
+    source.ground = drawing_of(database);
+  } catch (const std::runtime_error& error) {
+    source.ground.warnings.push_back(options.db->string() + ": " + error.what() +
+                                     "; no occupancy grid is drawn");
+  }
+  database.require_unchanged();
+  return source;
 }
 
 ordered_json to_json(const Finding& finding) {
@@ -46,6 +76,8 @@ ordered_json to_json(const Finding& finding) {
   if (finding.feature) json["feature"] = *finding.feature;
   if (finding.line != 0) json["line"] = finding.line;
   json["message"] = finding.message;
+  json["at"] = nullptr;
+  if (const auto at = point_of(finding.place)) json["at"] = {at->x_m, at->y_m};
   return json;
 }
 
@@ -67,7 +99,7 @@ ordered_json to_json(const PlannedPortal& portal, const ZonePlan& plan) {
           {"length_m", distance_m(p, q)}};
 }
 
-ordered_json zones_json(const ZonePlan& plan, const std::optional<SignatureCounts>& counts) {
+ordered_json zones_json(const ZonePlan& plan, const SignatureCounts* counts) {
   const std::vector<std::size_t> portals = portals_per_zone(plan);
   ordered_json zones = ordered_json::array();
   for (std::size_t i = 0; i < plan.zones.size(); ++i) {
@@ -77,7 +109,7 @@ ordered_json zones_json(const ZonePlan& plan, const std::optional<SignatureCount
                      {"label", zone.label},
                      {"area_m2", std::round(area_m2(zone.polygon) * 1e4) / 1e4},
                      {"portals", portals[i]}});
-    if (counts) zones.back()["signatures"] = counts->partition.signatures[i];
+    if (counts != nullptr) zones.back()["signatures"] = counts->partition.signatures[i];
   }
   return zones;
 }
@@ -91,52 +123,53 @@ ordered_json signatures_json(const SignatureCounts& counts, const ZonePlan& plan
                        {"nearest_zone", plan.zones[orphan.nearest_zone].name},
                        {"distance_m", orphan.distance_m}});
   }
-  return {{"in_zones", counts.linked - counts.partition.orphans.size()},
-          {"on_border", counts.partition.on_border},
-          {"unlinked", counts.unlinked},
-          {"orphans", std::move(orphans)}};
-}
-
-std::string plural(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
-void print_zones(const ZonePlan& plan, const std::optional<SignatureCounts>& counts,
-                 std::ostream& text) {
-  std::size_t name_width = 4, type_width = 4;
-  for (const PlannedZone& zone : plan.zones) {
-    name_width = std::max(name_width, utf8_width(zone.name));
-    type_width = std::max(type_width, utf8_width(zone.zone_type));
+  ordered_json json = {{"in_zones", counts.places.size() - counts.partition.orphans.size()},
+                       {"on_border", counts.partition.on_border},
+                       {"unlinked", counts.unlinked},
+                       {"orphans", std::move(orphans)},
+                       {"read_otherwise", nullptr}};
+  if (counts.misdrawn) {
+    json["read_otherwise"] = {{"how", counts.misdrawn->how}, {"orphans", counts.misdrawn->orphans}};
   }
-  const auto padded = [](const std::string& cell, std::size_t width) {
-    return cell + std::string(width - utf8_width(cell), ' ');
-  };
-  text << "\n"
-       << padded("zone", name_width) << "  " << padded("type", type_width)
-       << "     area m2  portals" << (counts ? "  signatures" : "") << "\n";
+  return json;
+}
+
+void print_zones(const ZonePlan& plan, const SignatureCounts* counts, std::ostream& text) {
+  std::vector<std::string> head{"zone", "type", "area m2", "portals"};
+  if (counts != nullptr) head.emplace_back("signatures");
+  TextTable table(head);
   const std::vector<std::size_t> portals = portals_per_zone(plan);
-  for (std::size_t i = 0; i < plan.zones.size(); ++i) {
+  std::vector<std::string> names;
+  for (const PlannedZone& zone : plan.zones) names.push_back(zone.name);
+  for (const std::size_t i : natural_order(names)) {
     const PlannedZone& zone = plan.zones[i];
-    text << padded(zone.name, name_width) << "  " << padded(zone.zone_type, type_width)
-         << std::fixed << std::setprecision(1) << std::setw(12) << area_m2(zone.polygon)
-         << std::setw(9) << portals[i];
-    if (counts) text << std::setw(12) << counts->partition.signatures[i];
-    text << "\n";
+    std::vector<std::string> row{zone.name, zone.zone_type,
+                                 report::format_fixed(area_m2(zone.polygon), 1),
+                                 std::to_string(portals[i])};
+    if (counts != nullptr) row.push_back(std::to_string(counts->partition.signatures[i]));
+    table.add(std::move(row));
   }
+  text << "\n";
+  table.print(text);
 }
 
-void print_signatures(const SignatureCounts& counts, const ZonePlan& plan, std::ostream& text) {
+void print_signatures(const SignatureCounts& counts, const ZonePlan& plan, bool faulty,
+                      std::ostream& text) {
   const std::vector<Orphan>& orphans = counts.partition.orphans;
+  const std::vector<OrphanGroup> groups = group_orphans(orphans);
   text << "\n"
-       << plural(counts.linked - orphans.size(), "signature") << " in zones, " << orphans.size()
-       << " in none\n";
-  for (std::size_t i = 0; i < orphans.size() && i < kOrphansPrinted; ++i) {
-    text << "  signature " << orphans[i].id << " at " << point_text(orphans[i].p_map) << ", "
-         << number_text(orphans[i].distance_m) << " m from zone '"
-         << plan.zones[orphans[i].nearest_zone].name << "'\n";
+       << plural(counts.places.size() - orphans.size(), "signature") << " in zones, "
+       << orphans_text(groups, plan.zones) << "\n";
+  for (std::size_t i = 1; i < groups.size() && i <= kGroupsPrinted; ++i) {
+    text << "  " << groups[i].count << " " << near_text(groups[i], plan.zones)
+         << ", such as signature " << groups[i].example << "\n";
   }
-  if (orphans.size() > kOrphansPrinted) {
-    text << "  and " << orphans.size() - kOrphansPrinted << " more (--json lists all)\n";
+  if (groups.size() > kGroupsPrinted + 1) {
+    text << "  and others near " << plural(groups.size() - kGroupsPrinted - 1, "more zone")
+         << " (--json lists every signature)\n";
+  }
+  if (!orphans.empty() && faulty) {
+    text << "  zones with a faulty outline hold no signatures until they are mended\n";
   }
   if (!orphans.empty())
     text << "  build gives them to the nearest zone unless --orphans says otherwise\n";
@@ -151,8 +184,38 @@ void warn_of_empty_zones(const ZonePlan& plan, const SignatureCounts& counts, Fi
     if (counts.partition.signatures[i] > 0) continue;
     const std::string& name = plan.zones[i].name;
     findings.warnings.push_back(
-        {std::nullopt, 0, name,
-         "zone '" + name + "' holds no signature; was it drawn in the right place?"});
+        {std::nullopt,
+         0,
+         name,
+         "zone '" + name + "' holds no signature; was it drawn in the right place?",
+         {{plan.zones[i].polygon.outer}, {}, {}}});
+  }
+}
+
+void print_findings(const FindingList& findings, const char* kind, const std::string& file,
+                    std::ostream& text) {
+  if (findings.empty()) return;
+  text << "\n";
+  for (const Finding& finding : findings) text << kind << to_string(finding, file) << "\n";
+  if (findings.left_out() > 0) text << kind << "and " << findings.left_out() << " more\n";
+}
+
+void draw(const CheckZonesOptions& options, const ZoneFile& file, const Source* source) {
+  ZonesOnMap map{.file = options.zones,
+                 .zones = &file,
+                 .places = {},
+                 .partition = {},
+                 .misdrawn = {},
+                 .ground = nullptr,
+                 .wrap = !options.out.ends_with(".html")};
+  if (source != nullptr) {
+    map.places = source->counts.places;
+    map.partition = source->counts.partition;
+    map.misdrawn = source->counts.misdrawn;
+    map.ground = &source->ground;
+  }
+  if (const auto written = report::write_report(options.out, make_zones_page(map)); !written) {
+    throw std::runtime_error(written.error().message);
   }
 }
 
@@ -162,33 +225,40 @@ int check_zones(const CheckZonesOptions& options, std::ostream& text, ordered_js
   ZoneFile file = check_zone_file(options.zones, options.snap_m);
   const ZonePlan& plan = file.plan;
   Findings& findings = file.findings;
-  std::optional<SignatureCounts> counts;
-  if (options.db && !plan.zones.empty()) {
-    counts = count_signatures(*options.db, plan);
-    warn_of_empty_zones(plan, *counts, findings);
+  std::optional<Source> source;
+  if (options.db && (!plan.zones.empty() || !options.out.empty())) {
+    source = read_source(options, plan);
   }
+  const SignatureCounts* const counts = source && !plan.zones.empty() ? &source->counts : nullptr;
+  if (counts != nullptr) {
+    warn_of_empty_zones(plan, *counts, findings);
+    if (counts->misdrawn) {
+      findings.warnings.push_back(
+          {std::nullopt, 0, "",
+           misdrawn_text(*counts->misdrawn, counts->partition.orphans.size(),
+                         counts->places.size())});
+    }
+  }
+  if (!options.out.empty()) draw(options, file, source ? &*source : nullptr);
 
   text << options.zones << ": " << plural(plan.zones.size(), "zone") << ", "
        << plural(plan.portals.size(), "portal")
        << (plan.portals_found ? " (none drawn: found from shared borders)" : "") << "; "
        << plural(findings.faults.size(), "fault") << ", "
        << plural(findings.warnings.size(), "warning") << "\n";
-  for (const Finding& fault : findings.faults) {
-    text << "fault: " << to_string(fault, options.zones) << "\n";
-  }
-  if (findings.faults.left_out() > 0) {
-    text << "fault: and " << findings.faults.left_out() << " more\n";
-  }
-  for (const Finding& warning : findings.warnings) {
-    text << "warning: " << to_string(warning, options.zones) << "\n";
-  }
-  if (findings.warnings.left_out() > 0) {
-    text << "warning: and " << findings.warnings.left_out() << " more\n";
-  }
   if (!plan.zones.empty()) print_zones(plan, counts, text);
-  if (counts) print_signatures(*counts, plan, text);
+  if (counts != nullptr) print_signatures(*counts, plan, !findings.faults.empty(), text);
+  if (!options.out.empty()) text << "\n" << options.out << ": the zones as a picture\n";
+  if (source) {
+    for (const std::string& warning : source->ground.warnings) {
+      text << "warning: " << warning << "\n";
+    }
+  }
+  print_findings(findings.warnings, "warning: ", options.zones, text);
+  print_findings(findings.faults, "fault: ", options.zones, text);
   if (!findings.faults.empty()) {
-    text << "\nMend the faults and check again; 'zonepack build' refuses this file.\n";
+    text << "\nMend the " << (findings.faults.size() == 1 ? "fault" : "faults")
+         << " and check again; 'zonepack build' refuses this file.\n";
   }
 
   json["zones_file"] = options.zones;
@@ -199,7 +269,8 @@ int check_zones(const CheckZonesOptions& options, std::ostream& text, ordered_js
   json["portals_found"] = plan.portals_found;
   json["portals"] = ordered_json::array();
   for (const PlannedPortal& portal : plan.portals) json["portals"].push_back(to_json(portal, plan));
-  if (counts) json["signatures"] = signatures_json(*counts, plan);
+  if (counts != nullptr) json["signatures"] = signatures_json(*counts, plan);
+  if (!options.out.empty()) json["picture"] = options.out;
   return findings.faults.empty() ? 0 : 1;
 }
 
@@ -225,6 +296,10 @@ void add_check_zones_command(CLI::App& app, int& exit_code) {
         return fits ? std::string() : "'" + metres + "' is no distance between 0 and 10 metres";
       })
       ->capture_default_str();
+  add_report_option(
+      *command, arguments->options.out,
+      "draw the zones over the database's occupancy grid, faults and signatures in no "
+      "zone in red: .html, .svg or .png");
   arguments->json.add_option(*command);
   command->footer(
       "Zones are Polygon features with \"name\" and \"zone_type\"; portals are LineString features "
@@ -232,7 +307,12 @@ void add_check_zones_command(CLI::App& app, int& exit_code) {
       "\"portal\": true and \"zones\": [\"A\", \"B\"]. Without portals they are found from shared "
       "borders.\n"
       "Exit code: 0 no faults, 1 faults or a file that cannot be read, 2 wrong usage.");
+  add_examples(*command, {"zonepack check-zones zones.geojson",
+                          "zonepack check-zones zones.geojson --db map.db --out preview.html",
+                          "zonepack check-zones zones.geojson --db map.db --snap 0.2 --json -"});
   command->callback([arguments, &exit_code] {
+    require_writable(arguments->options.out);
+    arguments->json.require_writable();
     ordered_json json;
     exit_code = check_zones(arguments->options, arguments->json.text(), json);
     arguments->json.write(json);

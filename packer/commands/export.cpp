@@ -12,9 +12,12 @@
 #include <string>
 #include <vector>
 
+#include "packer/console/command_line.hpp"
+#include "packer/console/output_path.hpp"
 #include "packer/export/zone_export.hpp"
 #include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
+#include "platform/command_line/command_line.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -71,6 +74,7 @@ void write_to_standard_output(std::string_view piece) {
 }
 
 void run_export(const ExportArguments& arguments) {
+  require_writable(arguments.out);
   const MapReader map(arguments.folder);
   const std::vector<ZoneId> zones = chosen_zones(map, arguments.zones);
   const auto require = [&](const Result<void>& written) {
@@ -104,9 +108,12 @@ void add_export_command(CLI::App& app, int& exit_code) {
       ->type_name("Z")
       ->take_all()
       ->allow_extra_args(false);
-  command->add_flag("--jsonl", arguments->jsonl, "the format: one JSON object a line")->required();
+  command->add_flag("--jsonl", arguments->jsonl,
+                    "one JSON object a line: the default, and the only format");
   command->add_option("--out", arguments->out, "file to write; default standard output")
       ->type_name("FILE");
+  add_examples(*command, {"zonepack export map --out map.jsonl",
+                          "zonepack export map --zone L1 --zone H1 | head -n 1"});
   command->callback([arguments, &exit_code] {
     run_export(*arguments);
     exit_code = 0;

@@ -4,67 +4,26 @@
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <memory>
-#include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "packer/console/command_line.hpp"
-#include "packer/outline/map_image.hpp"
-#include "packer/outline/occupancy_map.hpp"
+#include "packer/console/output_path.hpp"
+#include "packer/console/words.hpp"
+#include "packer/outline/map_drawing.hpp"
 #include "packer/outline/paths.hpp"
 #include "packer/sources/rtabmap_database.hpp"
 #include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
+#include "platform/command_line/command_line.hpp"
 
 namespace zonepack::packer {
 namespace {
 
 using nlohmann::ordered_json;
 using Files = std::vector<std::pair<std::string, std::string>>;  // name, content
-
-struct MapDrawing {
-  MapImage image;
-  std::string source;
-  std::size_t grids = 0;
-  std::vector<std::string> warnings;
-};
-
-MapDrawing from_grids(RtabmapDatabase& database) {
-  MapDrawing plan;
-  plan.source = "local grids";
-  constexpr PayloadSet kGridOnly{.features = false,
-                                 .scan = false,
-                                 .grid = true,
-                                 .image = false,
-                                 .depth = false,
-                                 .userdata = false};
-  std::optional<OccupancyMap> map;
-  SignatureRecord record;
-  for (const NodeOutline& node : database.outline().nodes) {
-    if (!node.pose || node.damaged) continue;
-    try {
-      database.read(node.id, kGridOnly, record);
-    } catch (const DamagedSignature& damage) {
-      plan.warnings.push_back(std::string(damage.what()) + "; its grid is left out");
-      continue;
-    }
-    if (!record.grid || !(record.grid->cell_size > 0)) continue;
-    if (!map) map.emplace(decimal_of(record.grid->cell_size));
-    map->add(*record.grid, *node.pose);
-    ++plan.grids;
-  }
-  if (map) plan.image = map->image();
-  return plan;
-}
-
-MapDrawing drawing_of(RtabmapDatabase& database) {
-  const std::optional<OptimisedMap>& own = database.outline().optimised_map;
-  if (own && own->resolution > 0) return {image_of(*own), "the database's own map", 0, {}};
-  return from_grids(database);
-}
 
 [[noreturn]] void refuse(const std::string& path, const Error& error) {
   throw std::runtime_error(cannot_write(path, error).message +
@@ -167,8 +126,8 @@ void write_outline(const OutlineOptions& options, std::ostream& text, ordered_js
                        std::to_string(outline.nodes.size()) +
                        " signatures have no optimised pose and are not drawn");
   }
-  text << options.out.string() << ": " << linked << " signatures, " << paths.size()
-       << (paths.size() == 1 ? " trajectory" : " trajectories");
+  text << options.out.string() << ": " << plural(linked, "signature") << ", "
+       << plural(paths.size(), "trajectory", "trajectories");
   if (with_map) {
     text << ", a map of " << plan.image.width << " x " << plan.image.height << " cells of "
          << plan.image.resolution_m << " m from " << plan.source;
@@ -208,7 +167,10 @@ void add_outline_command(CLI::App& app, int& exit_code) {
       "local grids), map.wld (for QGIS), signatures.geojson and trajectories.geojson, all in "
       "metres of\n"
       "the map frame. Files of an earlier run are replaced only after all have been written.");
+  add_examples(*command, {"zonepack outline --db map.db --out outline"});
   command->callback([arguments, &exit_code] {
+    require_writable_folder(arguments->options.out, "--out");
+    arguments->json.require_writable();
     ordered_json json;
     write_outline(arguments->options, arguments->json.text(), json);
     arguments->json.write(json);

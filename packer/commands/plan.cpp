@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "packer/commands/plan.hpp"
 
-#include <iomanip>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "packer/console/command_line.hpp"
+#include "packer/console/text_table.hpp"
+#include "packer/console/words.hpp"
 #include "packer/decode/map_reader.hpp"
 #include "packer/inspect/map_plan.hpp"
-#include "runtime/report/format.hpp"
+#include "platform/command_line/command_line.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -31,11 +32,6 @@ struct PlanArguments {
   std::vector<std::string> pins;
   JsonOutput json;
 };
-
-std::string in_bytes(ByteCount bytes) {
-  return std::to_string(bytes) + " bytes (" + report::format_bytes(static_cast<double>(bytes)) +
-         ")";
-}
 
 std::string pair_text(const MapPlan& plan, ZoneId a, ZoneId b) {
   if (a == kNoZone) return "no zone";
@@ -90,9 +86,10 @@ nlohmann::ordered_json to_json(const MapPlan& plan, const PlanArguments& argumen
 }
 
 void print(const BudgetPlan& b, const MapPlan& plan, std::ostream& out) {
-  out << "budget " << in_bytes(b.bytes) << ": " << b.slots << " slots\n";
+  out << "budget " << size_text(b.bytes) << ": " << plural(b.slots, "slot") << "\n";
   if (!b.suffices) {
-    out << "  BELOW THE SMALLEST by " << plan.smallest.bytes - b.bytes << " bytes: the robot would "
+    out << "  BELOW THE SMALLEST by " << plural(plan.smallest.bytes - b.bytes, "byte")
+        << ": the robot would "
         << (b.zones_without_room.empty() ? "enter a zone before it is loaded\n"
                                          : "refuse to start\n");
   }
@@ -106,35 +103,31 @@ void print(const BudgetPlan& b, const MapPlan& plan, std::ostream& out) {
   if (b.whole_map) {
     out << "  holds the whole map: nothing is ever unloaded\n";
   } else {
-    out << "  holds any " << b.largest_zones_at_once << " zones at once\n";
+    out << "  holds any " << plural(b.largest_zones_at_once, "zone") << " at once\n";
   }
 }
 
 void print(const MapPlan& plan, std::ostream& out) {
-  std::size_t width = 4;
-  for (const ZoneCost& zone : plan.zones) width = std::max(width, zone.name.size());
-  const auto row = [&](const std::string& name, const auto& signatures, const auto& charged,
-                       const auto& stored) {
-    out << std::left << std::setw(static_cast<int>(width)) << name << std::right << std::setw(12)
-        << signatures << std::setw(15) << charged << std::setw(14) << stored;
-  };
-  row("zone", "signatures", "charged bytes", "stored bytes");
-  out << "\n";
+  TextTable table({"zone", "signatures", "charged MiB", "stored MiB", ""});
   std::uint64_t signatures = 0, charged = 0, stored = 0;
-  for (const ZoneCost& zone : plan.zones) {
-    row(zone.name, zone.signatures, zone.charged_bytes, zone.stored_bytes);
-    out << (zone.pinned ? "  pinned\n" : "\n");
+  std::vector<std::string> names;
+  for (const ZoneCost& zone : plan.zones) names.push_back(zone.name);
+  for (const std::size_t i : natural_order(names)) {
+    const ZoneCost& zone = plan.zones[i];
+    table.add({zone.name, std::to_string(zone.signatures), mib_text(zone.charged_bytes),
+               mib_text(zone.stored_bytes), zone.pinned ? "pinned" : ""});
     signatures += zone.signatures;
     charged += zone.charged_bytes;
     stored += zone.stored_bytes;
   }
-  row("all", signatures, charged, stored);
+  table.add({"all", std::to_string(signatures), mib_text(charged), mib_text(stored), ""});
+  table.print(out);
   const std::string payload = payload_text(plan.payload);
   out << "\nloaded: core" << (payload.empty() ? "" : "," + payload) << "\nfixed "
-      << in_bytes(plan.fixed_bytes) << "\nsmallest budget " << in_bytes(plan.smallest.bytes) << ", "
-      << plan.smallest.slots << " slots, set by "
+      << size_text(plan.fixed_bytes) << "\nsmallest budget " << size_text(plan.smallest.bytes)
+      << ", " << plural(plan.smallest.slots, "slot") << ", set by "
       << pair_text(plan, plan.smallest.pair.zone_a, plan.smallest.pair.zone_b)
-      << "\nto change maps live " << in_bytes(plan.live_change_bytes) << "\n";
+      << "\nto change maps live " << size_text(plan.live_change_bytes) << "\n";
   if (plan.budget) print(*plan.budget, plan, out);
 }
 
@@ -156,7 +149,10 @@ void add_plan_command(CLI::App& app, int& exit_code) {
       ->take_all()
       ->allow_extra_args(false);
   arguments->json.add_option(*command);
+  add_examples(*command, {"zonepack plan map", "zonepack plan map --budget 8MiB --pin L1",
+                          "zonepack plan map --payload features --json -"});
   command->callback([arguments, budget, payload, &exit_code] {
+    arguments->json.require_writable();
     const MapReader map(arguments->folder);
     const PayloadMask packed = map.manifest().payload_mask();
     std::ostream& text = arguments->json.text();

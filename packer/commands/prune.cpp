@@ -6,6 +6,8 @@
 
 #include "packer/build/leftovers.hpp"
 #include "packer/console/command_line.hpp"
+#include "packer/console/words.hpp"
+#include "platform/command_line/command_line.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -17,6 +19,7 @@ struct PruneArguments {
 };
 
 void run_prune(const PruneArguments& arguments) {
+  arguments.json.require_writable();
   const std::vector<Leftover> leftovers = find_leftovers(arguments.folder);
   std::ostream& out = arguments.json.text();
   ByteCount bytes = 0;
@@ -25,12 +28,11 @@ void run_prune(const PruneArguments& arguments) {
     if (!arguments.dry_run) remove_leftover(arguments.folder, leftover);
     bytes += leftover.bytes;
     out << (arguments.dry_run ? "would remove " : "removed ") << leftover.name << " ("
-        << leftover.bytes << " bytes)\n";
+        << plural(leftover.bytes, "byte") << ")\n";
     files.push_back({{"file", leftover.name}, {"bytes", leftover.bytes}});
   }
-  out << arguments.folder << ": " << leftovers.size()
-      << (leftovers.size() == 1 ? " file, " : " files, ") << bytes << " bytes "
-      << (arguments.dry_run ? "to remove\n" : "removed\n");
+  out << arguments.folder << ": " << plural(leftovers.size(), "file") << ", " << size_text(bytes)
+      << " " << (arguments.dry_run ? "to remove\n" : "removed\n");
   nlohmann::ordered_json json;
   json["map"] = arguments.folder;
   json["dry_run"] = arguments.dry_run;
@@ -48,6 +50,7 @@ void add_prune_command(CLI::App& app, int& exit_code) {
   command->add_option("DIR", arguments->folder, "folder of the map")->required();
   command->add_flag("--dry-run", arguments->dry_run, "list them, remove nothing");
   arguments->json.add_option(*command);
+  add_examples(*command, {"zonepack prune map --dry-run", "zonepack prune map"});
   command->callback([arguments, &exit_code] {
     run_prune(*arguments);
     exit_code = 0;

@@ -2,13 +2,20 @@
 #include "packer/commands/report.hpp"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
 #include "packer/console/command_line.hpp"
+#include "packer/console/output_path.hpp"
 #include "packer/decode/map_reader.hpp"
+#include "packer/preview/ground.hpp"
+#include "packer/sources/rtabmap_database.hpp"
+#include "platform/command_line/command_line.hpp"
 #include "runtime/pack_format/file/accounting.hpp"
 #include "runtime/pack_format/file/checksum.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
@@ -55,6 +62,30 @@ std::string source_text(const fb::Provenance& source) {
   return text + ".";
 }
 
+struct ReportOptions {
+  std::string folder, out;
+  PayloadMask payload = kDefaultPayload;
+  std::optional<std::filesystem::path> db;
+};
+
+MapDrawing ground_of(const ReportOptions& options) {
+  if (!options.db) return drawing_of(MapReader(options.folder));
+  RtabmapDatabase database(*options.db);
+  MapDrawing drawing = drawing_of(database);
+  database.require_unchanged();
+  return drawing;
+}
+
+void run_report(const ReportOptions& options) {
+  require_writable(options.out);
+  report::PackReport map = read_pack_report(options.folder, options.payload);
+  const MapDrawing ground = ground_of(options);
+  for (const std::string& warning : ground.warnings) std::cerr << "warning: " << warning << "\n";
+  map.ground = raster_of(ground.image);
+  const auto written = report::write_report(options.out, report::make_pack_report(map));
+  if (!written) throw std::runtime_error(written.error().message);
+}
+
 }  // namespace
 
 report::PackReport read_pack_report(const std::string& folder, PayloadMask payload) {
@@ -83,27 +114,31 @@ report::PackReport read_pack_report(const std::string& folder, PayloadMask paylo
   return map;
 }
 
+CLI::Option* add_report_option(CLI::App& app, std::string& out, const std::string& help) {
+  return app.add_option("--out", out, help)->type_name("FILE")->check([](const std::string& path) {
+    return report::check_report_name(path).error().message;
+  });
+}
+
 void add_report_command(CLI::App& app, int& exit_code) {
-  struct Options {
-    std::string folder, out;
-    PayloadMask payload = kDefaultPayload;
-  };
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReportOptions>();
   CLI::App* const command = app.add_subcommand(
-      "report", "Draw a map: the floor plan with its zones coloured by the bytes they charge");
+      "report",
+      "Draw a map: the floor plan with its zones coloured by the bytes they charge, over the "
+      "occupancy grid");
   command->add_option("DIR", options->folder, "folder of the map")->required();
-  command->add_option("--out", options->out, "file to write: .html, .png or .svg")
-      ->required()
-      ->check(
-          [](const std::string& path) { return report::check_report_name(path).error().message; });
+  add_report_option(*command, options->out, "file to write: .html, .png or .svg")->required();
   add_payload_option(*command, "--payload", options->payload,
                      "what to count besides the core; default features,scan,grid");
+  command
+      ->add_option("--db", options->db,
+                   "take the occupancy grid from this RTAB-Map database; default: from the local "
+                   "grids in the packs")
+      ->type_name("DB");
+  add_examples(*command, {"zonepack report map --out map.html",
+                          "zonepack report map --db map.db --out map.svg"});
   command->callback([options, &exit_code] {
-    const report::Report page =
-        report::make_pack_report(read_pack_report(options->folder, options->payload));
-    if (const auto written = report::write_report(options->out, page); !written) {
-      throw std::runtime_error(written.error().message);
-    }
+    run_report(*options);
     exit_code = 0;
   });
 }

@@ -14,7 +14,11 @@ namespace zonepack::packer {
 report::PackReport read_pack_report(const std::string& folder,
                                     PayloadMask payload = kDefaultPayload);
 
-// `zonepack report DIR --out FILE.html|.png|.svg [--payload LIST]`; sets exit_code when it has run.
+// The option --out of commands that draw: takes names that end in .html, .svg or .png.
+CLI::Option* add_report_option(CLI::App& app, std::string& out, const std::string& help);
+
+// `zonepack report DIR --out FILE.html|.png|.svg [--payload LIST] [--db DB]`; sets exit_code when
+// it has run.
 void add_report_command(CLI::App& app, int& exit_code);
 
 }  // namespace zonepack::packer

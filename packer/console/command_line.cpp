@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "packer/console/command_line.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <iostream>
 #include <stdexcept>
 
+#include "packer/console/output_path.hpp"
 #include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
 
@@ -76,6 +79,8 @@ void JsonOutput::add_option(CLI::App& app) {
 }
 
 std::ostream& JsonOutput::text() const { return file_ == "-" ? std::cerr : std::cout; }
+
+void JsonOutput::require_writable() const { packer::require_writable(file_); }
 
 void JsonOutput::write(const nlohmann::ordered_json& json) const {
   if (file_.empty()) return;

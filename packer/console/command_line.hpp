@@ -53,6 +53,8 @@ class JsonOutput {
   void add_option(CLI::App& app);
   // The stream for people: standard output, or standard error when JSON goes to standard output.
   std::ostream& text() const;
+  // Throws, before a long run, when FILE cannot be written.
+  void require_writable() const;
   // Writes the file whole or not at all; throws std::runtime_error when it cannot.
   void write(const nlohmann::ordered_json& json) const;
 

@@ -11,6 +11,10 @@
 
 namespace zonepack::packer {
 
+// What stands where a manifest or a pack was expected, when its first bytes show it: "is a Git LFS
+// pointer, ...", with what to do. Empty for a file of its kind (which may be damaged) or of none.
+std::string misplaced_map_file(const std::string& path);
+
 // A packed map opened by a tool: reads and checks the whole manifest at once, packs on request.
 // Throws std::runtime_error with a complete message that names the file.
 class MapReader {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
-#include <stdexcept>
 #include <utility>
 
+#include "packer/encode/format_limit.hpp"
 #include "platform/base/require.hpp"
 #include "runtime/pack_format/core_chunk_generated.h"
 #include "runtime/pack_format/limits.hpp"
@@ -34,10 +34,8 @@ std::uint64_t bound_of(const SignatureRecord& record) {
 }
 
 void check_length(const SignatureRecord& record, const char* column, std::size_t size) {
-  if (size <= kMaxCoreBlobBytes) return;
-  throw std::runtime_error("signature " + std::to_string(record.id) + ": " + column + " has " +
-                           std::to_string(size) + " bytes; a pack holds at most " +
-                           std::to_string(kMaxCoreBlobBytes) + " there");
+  require_within(LimitId::kCoreBlobBytes, size,
+                 "signature " + std::to_string(record.id) + ", " + column);
 }
 
 // Any fixed order will do, since indices follow the order of insertion.

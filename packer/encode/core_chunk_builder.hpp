@@ -9,7 +9,6 @@
 
 namespace zonepack::packer {
 
-inline constexpr std::size_t kMaxCoreBlobBytes = 4096;  // a label, a calibration
 inline constexpr std::size_t kLinksPerCoreRecord = 32;  // the rest goes to further records
 
 // What the core of a pack keeps of a signature: everything but its tables.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "packer/encode/format_limit.hpp"
 #include "platform/base/failure.hpp"
 #include "platform/base/require.hpp"
 
@@ -44,6 +45,7 @@ PackWriter::PackWriter(const std::filesystem::path& folder, std::string zone)
 
 void PackWriter::add(SignatureRecord& record, float x, float y) {
   const std::uint32_t ordinal = summary_.signatures++;
+  require_within(LimitId::kSignaturesOfZone, summary_.signatures, "zone " + zone_);
   summary_.features += record.features.count;
   positions_.emplace_back(x, y);
   summary_.signature_bytes.push_back(0);
@@ -123,11 +125,7 @@ void PackWriter::emit(fb::PayloadKind kind, const Bytes& decoded, std::uint32_t 
   entries_.emplace_back(offset_, xxh3(stored), flatbuffers::make_span(digest), stored_size, size,
                         first, last, min_x, min_y, max_x, max_y, kind,
                         lz4 ? fb::ChunkCodec::Lz4 : fb::ChunkCodec::Raw, std::uint16_t{0}, 0u);
-  if (entries_.size() > kMaxChunksPerPack) {
-    throw std::runtime_error("zone " + zone_ + " needs more than " +
-                             std::to_string(kMaxChunksPerPack) +
-                             " chunks; split it with --max-zone-bytes");
-  }
+  require_within(LimitId::kChunksOfPack, entries_.size(), "zone " + zone_);
   PackSummary::Payload& payload = summary_.payloads[static_cast<std::size_t>(kind)];
   payload.decoded += size;
   payload.stored += stored_size;

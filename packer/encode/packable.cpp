@@ -31,7 +31,9 @@ std::optional<Unpackable> long_blob(const SignatureRecord& record) {
       {"Node.env_sensors", record.env_sensors.size()},
       {"Data.calibration", record.calibration.size()}};
   for (const auto& [column, size] : blobs) {
-    if (size > kMaxCoreBlobBytes) return Unpackable{column, too_long(size, kMaxCoreBlobBytes)};
+    if (is_over(LimitId::kCoreBlobBytes, size)) {
+      return Unpackable{column, to_string(Excess{LimitId::kCoreBlobBytes, size})};
+    }
   }
   return std::nullopt;
 }

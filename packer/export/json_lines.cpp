@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "platform/base/base64.hpp"
 #include "platform/base/utf8.hpp"
 
 namespace zonepack::packer {
@@ -90,22 +91,9 @@ void JsonLines::quoted(std::string_view value) {
 }
 
 void JsonLines::base64(std::span<const std::byte> bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   separate();
   waiting_ += '"';
-  const std::size_t begin = waiting_.size();
-  waiting_.resize(begin + (bytes.size() + 2) / 3 * 4, '=');
-  char* out = waiting_.data() + begin;
-  const auto byte = [&](std::size_t i) {
-    return i < bytes.size() ? std::to_integer<unsigned>(bytes[i]) : 0u;
-  };
-  for (std::size_t i = 0; i < bytes.size(); i += 3, out += 4) {
-    const unsigned group = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
-    out[0] = kDigits[group >> 18];
-    out[1] = kDigits[group >> 12 & 63];
-    if (i + 1 < bytes.size()) out[2] = kDigits[group >> 6 & 63];
-    if (i + 2 < bytes.size()) out[3] = kDigits[group & 63];
-  }
+  append_base64(bytes, waiting_);
   waiting_ += '"';
 }
 

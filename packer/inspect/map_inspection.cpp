@@ -3,9 +3,12 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "packer/console/command_line.hpp"
 #include "packer/console/text_table.hpp"
+#include "packer/console/words.hpp"
 #include "packer/decode/map_reader.hpp"
 #include "packer/verify/problem.hpp"
 #include "runtime/pack_format/file/accounting.hpp"
@@ -98,19 +101,23 @@ void print(const fb::Manifest& manifest, const std::string& folder, const std::s
            std::ostream& out) {
   const std::uint32_t portals = manifest.portals() == nullptr ? 0 : manifest.portals()->size();
   out << folder << ": map " << hex_of(*manifest.lineage()) << ", version " << version << "\n"
-      << manifest.zones()->size() << " zones, " << portals << " portals, payload "
-      << payload_text(manifest.payload_mask()) << ", slots of " << manifest.slot_bytes()
-      << " bytes\n\n";
-  TextTable table({"zone", "type", "signatures", "features", "slots", "charged", "stored", "pack"});
+      << plural(manifest.zones()->size(), "zone") << ", " << plural(portals, "portal")
+      << ", payload " << payload_text(manifest.payload_mask()) << ", slots of "
+      << manifest.slot_bytes() << " bytes\n\n";
+  TextTable table(
+      {"zone", "type", "signatures", "features", "slots", "charged MiB", "stored MiB", "pack"});
   std::uint64_t signatures = 0, features = 0, slots = 0;
   ZoneBytes total;
-  for (const fb::Zone* zone : *manifest.zones()) {
+  std::vector<std::string> names;
+  for (const fb::Zone* zone : *manifest.zones()) names.push_back(zone->name()->str());
+  for (const std::size_t i : natural_order(names)) {
+    const fb::Zone* const zone = manifest.zones()->Get(static_cast<flatbuffers::uoffset_t>(i));
     const ZoneBytes bytes = bytes_of(manifest, *zone);
     const std::uint32_t zone_slots = zonepack::zone_slots(manifest, *zone, kDefaultPayload);
     table.add({zone->name()->str(), zone->zone_type() == nullptr ? "" : zone->zone_type()->str(),
                std::to_string(zone->signatures()), std::to_string(zone->features()),
-               std::to_string(zone_slots), std::to_string(bytes.charged),
-               std::to_string(bytes.stored), zone->pack()->str()});
+               std::to_string(zone_slots), mib_text(bytes.charged), mib_text(bytes.stored),
+               zone->pack()->str()});
     signatures += zone->signatures();
     features += zone->features();
     slots += zone_slots;
@@ -118,7 +125,7 @@ void print(const fb::Manifest& manifest, const std::string& folder, const std::s
     total.stored += bytes.stored;
   }
   table.add({"all", "", std::to_string(signatures), std::to_string(features), std::to_string(slots),
-             std::to_string(total.charged), std::to_string(total.stored), ""});
+             mib_text(total.charged), mib_text(total.stored), ""});
   table.print(out);
   out << "\nslots, charged and stored: for " << payload_text(kDefaultPayload)
       << "; the 16 digits in a pack's name begin its digest\n";

@@ -7,6 +7,8 @@
 
 #include "packer/console/command_line.hpp"
 #include "packer/console/text_table.hpp"
+#include "packer/console/words.hpp"
+#include "packer/decode/map_reader.hpp"
 #include "packer/verify/problem.hpp"
 #include "platform/base/failure.hpp"
 #include "runtime/pack_format/file/pack_reader.hpp"
@@ -64,9 +66,9 @@ Json chunk_json(const fb::ChunkEntry& entry, const std::optional<Placement::Plac
 
 void print(const PackReader& pack, const std::string& path, std::ostream& out) {
   const fb::PackIndex& index = pack.index();
-  out << path << ": zone " << index.zone()->str() << ", " << index.signatures() << " signatures, "
-      << index.features() << " features, " << pack.file().size() << " bytes\ndigest "
-      << to_hex(pack.tail().digest)
+  out << path << ": zone " << index.zone()->str() << ", " << plural(index.signatures(), "signature")
+      << ", " << plural(index.features(), "feature") << ", " << size_text(pack.file().size())
+      << "\ndigest " << to_hex(pack.tail().digest)
       << (index.grid_needs_scan() ? "\ngrid cells are stored as points of the scan" : "") << "\n\n";
   TextTable kinds({"kind", "chunks", "decoded", "stored", "ratio"});
   const auto sums = sums_of(index);
@@ -101,8 +103,11 @@ void print(const PackReader& pack, const std::string& path, std::ostream& out) {
 nlohmann::ordered_json inspect_pack(const std::string& path, std::ostream& out) {
   const Result<PackReader> pack = PackReader::open(path);
   if (!pack) {
+    const std::string kind = misplaced_map_file(path);
+    if (!kind.empty()) throw std::runtime_error(path + ": " + kind);
     throw std::runtime_error(path + ": " + reason_text(pack.error()) +
-                             "; 'zonepack verify' reports where the pack is damaged");
+                             "; to see where the pack is damaged: zonepack verify " +
+                             shell_word(path));
   }
   const fb::PackIndex& index = pack->index();
   Json json;

@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "platform/base/file_kind.hpp"
+
 namespace zonepack::packer {
 namespace {
 
@@ -108,8 +110,9 @@ RtabmapSchema::RtabmapSchema(const SqliteFile& file) {
   version_ = read_version(file);
   if (version_ < kOldest) {
     throw SqliteError(file.name() + ": was written by RTAB-Map " + version_.text() +
-                      ", older than 0.11; convert it with: rtabmap-reprocess '" + file.name() +
-                      "' NEW.db");
+                      ", older than 0.11; convert it with a newer RTAB-Map (which is no package of "
+                      "Debian 12): rtabmap-reprocess " +
+                      shell_quoted(file.name()) + " NEW.db");
   }
   feature_table_ = !has("Feature") && has("Map_Node_Word") ? "Map_Node_Word" : "Feature";
   if (version_ >= kFirstUnknown) {

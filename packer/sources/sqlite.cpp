@@ -34,10 +34,12 @@ fs::path with_suffix(const fs::path& path, const char* suffix) {
 void refuse_unless_database(const fs::path& path, const std::string& name) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) throw SqliteError(name + ": no such file");
+  if (status.type() == fs::file_type::not_found) {
+    throw SqliteError(name + ": no such file; expected an RTAB-Map database");
+  }
   if (error) throw SqliteError(name + ": " + error.message());
   if (fs::is_directory(status)) {
-    throw SqliteError(name + ": is a folder, expected a database file");
+    throw SqliteError(name + ": is a folder, expected a database file, such as map.db");
   }
   if (!fs::is_regular_file(status)) {
     throw SqliteError(name + ": is not a regular file, expected a database file");
@@ -49,10 +51,13 @@ void refuse_unless_database(const fs::path& path, const std::string& name) {
     throw SqliteError(name + ": cannot be read: " + std::strerror(errno));
   }
   const std::string first = first_bytes(path, kFileKindBytes);
-  if (const std::string kind = stand_in(first); !kind.empty()) {
+  if (const std::string kind = stand_in(first, name); !kind.empty()) {
     throw SqliteError(name + ": is " + kind + "; expected a SQLite database");
   }
   if (!first.starts_with(kDatabaseMagic)) {
+    if (const std::string kind = known_kind(first, name); !kind.empty()) {
+      throw SqliteError(name + ": is " + kind + "; expected a SQLite database");
+    }
     throw SqliteError(name +
                       ": is not a SQLite database (its first 16 bytes are not those of one)");
   }
@@ -231,14 +236,16 @@ void SqliteQuery::fail() const {
   if (!tables_readable) {
     throw SqliteCorrupt(file_->name(),
                         problem +
-                            "or try RTAB-Map's own tool, rtabmap-recovery: the list of "
-                            "tables is damaged too, which sqlite3 cannot get past");
+                            "or try rtabmap-recovery, which comes with RTAB-Map itself (Debian 12 "
+                            "has no package of it): the list of tables is damaged too, which "
+                            "sqlite3 cannot get past");
   }
   // What .dump could read of a damaged file ends with ROLLBACK.
   throw SqliteCorrupt(file_->name(), problem + "or save what is readable with: sqlite3 " +
                                          shell_quoted(file_->name()) +
                                          " .dump | sed 's/^ROLLBACK;.*/COMMIT;/' | sqlite3 NEW.db "
-                                         "(RTAB-Map's own tool is rtabmap-recovery)");
+                                         "(RTAB-Map itself, which is no package of Debian 12, "
+                                         "has rtabmap-recovery)");
 }
 
 }  // namespace zonepack::packer

@@ -79,8 +79,27 @@ bool holds_links_only(const fb::Signature& s) {
          s.velocity() == nullptr && s.gps() == nullptr && s.env_sensors() == nullptr;
 }
 
+// Of a label, a sensor's blob or a calibration, which may be absent.
+std::optional<std::string> length_problem(std::uint64_t size) {
+  if (!is_over(LimitId::kCoreBlobBytes, size)) return std::nullopt;
+  return "breaks a limit: " + to_string(Excess{LimitId::kCoreBlobBytes, size});
+}
+
 std::optional<std::string> core_chunk_problem(const fb::CoreChunk& chunk) {
+  const auto size_of = [](const auto* piece) -> std::uint64_t {
+    return piece == nullptr ? 0 : piece->size();
+  };
+  if (chunk.calibrations() != nullptr) {
+    for (const fb::Calibration* calibration : *chunk.calibrations()) {
+      if (auto problem = length_problem(size_of(calibration->data()))) return problem;
+    }
+  }
   for (const fb::Signature* signature : *chunk.signatures()) {
+    for (const std::uint64_t size :
+         {size_of(signature->label()), size_of(signature->velocity()), size_of(signature->gps()),
+          size_of(signature->env_sensors())}) {
+      if (auto problem = length_problem(size)) return problem;
+    }
     if (signature->continued() && !holds_links_only(*signature)) {
       return "an entry that continues a signature holds more than links";
     }

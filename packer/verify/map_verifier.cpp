@@ -15,29 +15,6 @@ namespace {
 
 const std::string kManifest(kManifestName);
 
-std::string manifest_problem(const Error& error) {
-  switch (error.code) {
-    case ErrorCode::kTruncated:
-      return "the file has " + std::to_string(error.detail) +
-             " bytes, not as many as its header says: it was cut off or joined with another";
-    case ErrorCode::kBadMagic:
-      return "the file does not begin and end as a manifest does";
-    case ErrorCode::kBadVersion:
-      return "format version " + std::to_string(error.detail) + ", this program reads " +
-             std::to_string(kManifestMajor);
-    case ErrorCode::kBadChecksum:
-      return "the bytes do not have the BLAKE2b-256 at its end";
-    case ErrorCode::kMismatch:
-      return "slots of " + std::to_string(error.detail) + " bytes, this format has " +
-             std::to_string(kSlotBytes);
-    case ErrorCode::kTooLarge:
-      return "more portals in all, or more than " + std::to_string(kMaxPortalsPerZone) +
-             " of one zone, than the format holds, or a longer file";
-    default:
-      return "the manifest breaks the rules of the format: " + reason_text(error);
-  }
-}
-
 class MapVerifier {
  public:
   explicit MapVerifier(const MapFiles& map) : map_(map) {}
@@ -90,6 +67,15 @@ class MapVerifier {
     verdict_.problems.push_back({std::move(place), text, remedy});
   }
 
+  void report_all(const Contradictions& contradictions, const char* who, const Location& place,
+                  const char* remedy) {
+    const std::size_t listed = std::min(contradictions.size(), kMostListed);
+    for (std::size_t i = 0; i < listed; ++i) report(place, who + contradictions[i], remedy);
+    if (contradictions.size() > listed) {
+      verdict_.problems.push_back(unlisted(place, contradictions.size() - listed));
+    }
+  }
+
   const fb::Manifest* read_manifest() {
     const Result<std::unique_ptr<MapFile>> file = map_.open(kManifest);
     if (!file) {
@@ -101,7 +87,9 @@ class MapVerifier {
       return nullptr;
     }
     if ((*file)->size() > kMaxManifestFileBytes) {
-      report({.file = kManifest}, manifest_problem({ErrorCode::kTooLarge, 0}), kCopyAgain);
+      report({.file = kManifest},
+             to_string(Excess{LimitId::kManifestBytes, (*file)->size() - kManifestFrameBytes}),
+             kCopyAgain);
       return nullptr;
     }
     const auto size = static_cast<std::size_t>((*file)->size());
@@ -112,12 +100,18 @@ class MapVerifier {
       return nullptr;
     }
     verdict_.bytes += bytes.size();
-    const Result<const fb::Manifest*> checked = check_manifest(bytes);
+    ManifestFault fault;
+    const Result<const fb::Manifest*> checked = check_manifest(bytes, &fault);
     if (checked) return *checked;
     const ErrorCode code = checked.error().code;
     const bool whole = code != ErrorCode::kTruncated && code != ErrorCode::kBadMagic &&
                        code != ErrorCode::kBadChecksum && code != ErrorCode::kBadVersion;
-    report({.file = kManifest}, manifest_problem(checked.error()),
+    Location place{.file = kManifest};
+    if (fault.part == ManifestFault::Part::kZone && !fault.name.empty()) {
+      place.zone = fault.name;
+      fault.part = ManifestFault::Part::kWhole;  // named by its place
+    }
+    report(std::move(place), manifest_fault_text(checked.error(), fault),
            whole ? kBuildAgain : kCopyAgain);
     return nullptr;
   }
@@ -130,15 +124,12 @@ class MapVerifier {
       if (!packs.back()) continue;
       const bool foreign = packs.back()->zone != name ||
                            !std::ranges::equal(packs.back()->digest, *zone->pack_digest());
-      for (const std::string& contradiction : zone_contradictions(manifest, *zone, *packs.back())) {
-        report({.file = foreign ? zone->pack()->str() : kManifest, .zone = name},
-               "the manifest " + contradiction, foreign ? kWrongFile : kBuildAgain);
-      }
+      report_all(zone_contradictions(manifest, *zone, *packs.back()), "the manifest ",
+                 {.file = foreign ? zone->pack()->str() : kManifest, .zone = name},
+                 foreign ? kWrongFile : kBuildAgain);
       if (foreign) packs.back().reset();
     }
-    for (const std::string& contradiction : map_contradictions(manifest, packs)) {
-      report({.file = kManifest}, contradiction, kBuildAgain);
-    }
+    report_all(map_contradictions(manifest, packs), "", {.file = kManifest}, kBuildAgain);
   }
 
   const MapFiles& map_;
@@ -147,6 +138,12 @@ class MapVerifier {
 };
 
 }  // namespace
+
+std::uint64_t Verdict::problem_count() const {
+  std::uint64_t count = 0;
+  for (const Problem& problem : problems) count += problem.count;
+  return count;
+}
 
 Verdict verify_map(const MapFiles& map) { return MapVerifier(map).run(); }
 

@@ -18,6 +18,7 @@ struct Verdict {
   std::size_t signatures = 0;        // decoded
   std::vector<std::string> unnamed;  // packs and parts that the manifest does not name
   bool whole() const { return problems.empty(); }
+  std::uint64_t problem_count() const;  // with those that are not listed
 };
 
 // Checks a map: the manifest, every pack it names (verify_pack), and that the manifest describes

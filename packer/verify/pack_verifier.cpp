@@ -35,11 +35,16 @@ class PackVerifier {
       whole = read_chunk(i, *index_->chunks()->Get(i)) && whole;
     }
     if (whole) check_signatures();
+    if (found_ > kMostListed) {
+      problems_.push_back(
+          unlisted({.file = name_, .zone = index_->zone()->str()}, found_ - kMostListed));
+    }
     return std::move(facts_);
   }
 
  private:
   void report(Location place, const std::string& text, const char* remedy) {
+    if (++found_ > kMostListed) return;
     place.file = name_;
     if (index_ != nullptr) place.zone = index_->zone()->str();
     problems_.push_back({std::move(place), text, remedy});
@@ -72,6 +77,7 @@ class PackVerifier {
   std::vector<std::unique_ptr<Slot>> memory_;
   std::vector<ChunkRef> chunks_;
   bool refers_to_scan_ = false;
+  std::uint64_t found_ = 0;  // problems
   PackFacts facts_;
 };
 
@@ -97,6 +103,8 @@ bool PackVerifier::read_frame() {
               : error.code == ErrorCode::kBadVersion
                   ? "format version " + std::to_string(error.detail) + ", this program reads " +
                         std::to_string(kPackMajor)
+              : excess_of(error)
+                  ? index_fault_text(error)
                   : "the tail places the index at byte " + std::to_string(error.detail) +
                         ", which is not where a file of this length has it",
               kCopyAgain);
@@ -130,10 +138,7 @@ bool PackVerifier::read_index(ByteSpan header) {
                   kCopyAgain);
         break;
       default:
-        report_at(tail_.index_offset,
-                  "the index breaks the rules of the format: " + reason_text(error) + " (" +
-                      std::to_string(error.detail) + ")",
-                  kBuildAgain);
+        report_at(tail_.index_offset, index_fault_text(error), kBuildAgain);
     }
     return false;
   }
@@ -188,6 +193,8 @@ bool PackVerifier::read_chunk(std::uint32_t place, const fb::ChunkEntry& entry) 
     return fail(
         decoded.error().code == ErrorCode::kBadCompression
             ? "the LZ4 block does not decode to " + std::to_string(entry.decoded_size()) + " bytes"
+        : excess_of(decoded.error())
+            ? to_string(*excess_of(decoded.error()))
             : "the decoded chunk breaks the rules of the format: " + reason_text(decoded.error()),
         kBuildAgain);
   }

@@ -27,6 +27,12 @@ std::string to_string(const Problem& problem) {
          problem.remedy;
 }
 
+Problem unlisted(Location place, std::uint64_t count) {
+  return {std::move(place),
+          "and " + std::to_string(count) + (count == 1 ? " more problem" : " more problems"),
+          "see to those that are listed, then verify again", count};
+}
+
 nlohmann::ordered_json to_json(const Problem& problem) {
   const Location& place = problem.place;
   nlohmann::ordered_json json;

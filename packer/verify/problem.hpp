@@ -22,11 +22,19 @@ struct Location {
 
 struct Problem {
   Location place;
-  std::string text;    // what was found and what was expected
-  std::string remedy;  // what to do
+  std::string text;         // what was found and what was expected
+  std::string remedy;       // what to do
+  std::uint64_t count = 1;  // more than 1: it stands for so many that are not listed
 };
 
 using Problems = std::vector<Problem>;
+
+// Listed at most of one pack, of what the manifest says of one zone, and of what it says of the
+// map; the rest is counted.
+inline constexpr std::size_t kMostListed = 20;
+
+// The problem that stands for all that are not listed.
+Problem unlisted(Location place, std::uint64_t count);
 
 // For bytes that are not the ones that were written.
 inline constexpr const char* kCopyAgain =

@@ -42,8 +42,9 @@ class DrawnFeature {
     subject_ = kind + " without a name (feature " + std::to_string(feature_.index) + ")";
   }
 
-  void fault(const std::string& message) {
-    findings_.faults.push_back({feature_.index, feature_.line, name_, subject_ + " " + message});
+  void fault(const std::string& message, FindingPlace place = {}) {
+    findings_.faults.push_back(
+        {feature_.index, feature_.line, name_, subject_ + " " + message, std::move(place)});
   }
   void warning(const std::string& message) {
     findings_.warnings.push_back({feature_.index, feature_.line, name_, subject_ + " " + message});
@@ -187,8 +188,8 @@ void read_outline(DrawnFeature& reader, DrawnZone& drawn) {
     if (!hole) return;
     polygon.holes.push_back(std::move(*hole));
   }
-  const std::vector<std::string> faults = outline_faults(polygon);
-  for (const std::string& message : faults) reader.fault(message);
+  const std::vector<OutlineFault> faults = outline_faults(polygon);
+  for (const OutlineFault& fault : faults) reader.fault(fault.message, fault.place);
   drawn.sound = faults.empty();
   drawn.zone.polygon = with_interior_on_the_left(std::move(polygon));
 }

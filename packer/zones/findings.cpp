@@ -5,6 +5,19 @@
 
 namespace zonepack::packer {
 
+std::optional<Point2> point_of(const FindingPlace& place) {
+  if (!place.points.empty()) return place.points.front();
+  if (!place.lines.empty()) {
+    const auto& [p, q] = place.lines.front();
+    return Point2{(p.x_m + q.x_m) / 2, (p.y_m + q.y_m) / 2};
+  }
+  if (place.areas.empty() || place.areas.front().empty()) return std::nullopt;
+  Point2 sum;
+  for (const Point2& p : place.areas.front()) sum = {sum.x_m + p.x_m, sum.y_m + p.y_m};
+  const auto count = static_cast<double>(place.areas.front().size());
+  return Point2{sum.x_m / count, sum.y_m / count};
+}
+
 std::string to_string(const Finding& finding, const std::string& file) {
   std::string text = file;
   if (finding.line != 0) text += ":" + std::to_string(finding.line);

@@ -12,11 +12,20 @@
 // What is wrong with a zone file, in messages that suffice to correct it.
 namespace zonepack::packer {
 
+// Where a finding is, for a picture; empty where it has no place.
+struct FindingPlace {
+  std::vector<Ring> areas;  // the common area of two zones, or the faulty outline
+  std::vector<Segment2> lines;
+  std::vector<Point2> points;
+  bool empty() const noexcept { return areas.empty() && lines.empty() && points.empty(); }
+};
+
 struct Finding {
   std::optional<std::size_t> feature;  // index in the file's list, from 0; nullopt: the file itself
   std::size_t line = 0;                // where the feature begins, from 1; 0: unknown
   std::string name;                    // zone or portal; empty when it has none
   std::string message;                 // complete: what was found, what was expected, what to do
+  FindingPlace place = {};
 };
 
 // Findings in the order they were made. Of more than kMost only the number is kept, so that a file
@@ -32,6 +41,13 @@ class FindingList {
       kept_.push_back(std::move(finding));
     } else {
       ++left_out_;
+    }
+  }
+  // Gives those kept a place that have none, as far as place_of(finding) knows one.
+  template <typename PlaceOf>
+  void locate(PlaceOf&& place_of) {
+    for (Finding& finding : kept_) {
+      if (finding.place.empty()) finding.place = place_of(finding);
     }
   }
   bool empty() const noexcept { return kept_.empty(); }
@@ -50,6 +66,9 @@ struct Findings {
   FindingList faults;    // the file is rejected
   FindingList warnings;  // the file is accepted, but a person should look at it
 };
+
+// A point in the middle of the first place that a finding has; nothing without one.
+std::optional<Point2> point_of(const FindingPlace& place);
 
 // "FILE:LINE: message", without the line when unknown.
 std::string to_string(const Finding& finding, const std::string& file);

@@ -98,4 +98,15 @@ Partition partition(std::span<const PlannedZone> zones, std::span<const Signatur
   return result;
 }
 
+std::size_t count_outside(std::span<const PlannedZone> zones,
+                          std::span<const SignaturePlace> signatures) {
+  std::vector<Box2> boxes;
+  for (const PlannedZone& zone : zones) boxes.push_back(bounds(zone.polygon.outer));
+  std::size_t outside = 0;
+  for (const SignaturePlace& place : signatures) {
+    if (holder_of(zones, boxes, place).side == Side::kOutside) ++outside;
+  }
+  return outside;
+}
+
 }  // namespace zonepack::packer

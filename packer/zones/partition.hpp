@@ -61,4 +61,8 @@ struct Partition {
 Partition partition(std::span<const PlannedZone> zones, std::span<const SignaturePlace> signatures,
                     OrphanPolicy policy);
 
+// How many signatures are in none of the zones, by rules 1 and 2.
+std::size_t count_outside(std::span<const PlannedZone> zones,
+                          std::span<const SignaturePlace> signatures);
+
 }  // namespace zonepack::packer

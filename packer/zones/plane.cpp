@@ -69,6 +69,23 @@ std::vector<Segment2> edges_in(const std::vector<Segment2>& edges, const Box2& b
   return inside;
 }
 
+// The stretches of a row that lie in both, from the places where edges pass it.
+std::vector<std::pair<double, double>> common_spans(const std::vector<double>& a,
+                                                    const std::vector<double>& b) {
+  std::vector<std::pair<double, double>> spans;
+  std::size_t i = 0, j = 0;
+  while (i + 1 < a.size() && j + 1 < b.size()) {
+    const double from = std::max(a[i], b[j]), to = std::min(a[i + 1], b[j + 1]);
+    if (from < to) spans.emplace_back(from, to);
+    if (a[i + 1] < b[j + 1]) {
+      i += 2;
+    } else {
+      j += 2;
+    }
+  }
+  return spans;
+}
+
 double common_width(const std::vector<double>& a, const std::vector<double>& b) {
   double width = 0;
   std::size_t i = 0, j = 0;
@@ -85,6 +102,37 @@ double common_width(const std::vector<double>& a, const std::vector<double>& b) 
 
 constexpr std::size_t kMostHeights =
     1'000'000;  // of the strips between two outlines, before sorting
+
+// The heights that part the common rows of two polygons into strips in which no edges begin, end or
+// cross; ascending. nullopt when the steps do not suffice.
+std::optional<std::vector<double>> strips_of(const Polygon& a, const Polygon& b,
+                                             const std::vector<Segment2>& edges_a,
+                                             const std::vector<Segment2>& edges_b,
+                                             MeasuringSteps& steps) {
+  const Box2 box_a = bounds(a.outer), box_b = bounds(b.outer);
+  const double low = std::max(box_a.min.y_m, box_b.min.y_m);
+  const double high = std::min(box_a.max.y_m, box_b.max.y_m);
+  std::vector<double> ys{low, high};
+  const auto add = [&](double y) {
+    if (y > low && y < high) ys.push_back(y);
+  };
+  for (const Segment2& e : edges_a) add(e.p.y_m);
+  for (const Segment2& e : edges_b) add(e.p.y_m);
+  const std::vector<Segment2> near_a = edges_in(edges_a, box_b), near_b = edges_in(edges_b, box_a);
+  Stretches rows = rows_of(near_b);
+  for (const Segment2& e : near_a) {
+    const Box2 box = box_of(e);
+    std::uint64_t compared = 1;
+    for (const std::uint32_t i : rows.touching(box.min.y_m - kBorderTolerance_m,
+                                               box.max.y_m + kBorderTolerance_m, compared)) {
+      if (const auto at = meeting_point(e, near_b[i])) add(at->y_m);
+    }
+    if (!steps.take(compared) || ys.size() > kMostHeights) return std::nullopt;
+  }
+  std::sort(ys.begin(), ys.end());
+  ys.erase(std::unique(ys.begin(), ys.end()), ys.end());
+  return ys;
+}
 
 }  // namespace
 
@@ -133,32 +181,11 @@ std::vector<SelfCrossing> self_crossings(const Ring& ring, std::size_t most) {
 }
 
 std::optional<double> common_area_m2(const Polygon& a, const Polygon& b, MeasuringSteps& steps) {
-  const Box2 box_a = bounds(a.outer), box_b = bounds(b.outer);
-  if (!boxes_meet(box_a, box_b, 0)) return 0;
-  const double low = std::max(box_a.min.y_m, box_b.min.y_m);
-  const double high = std::min(box_a.max.y_m, box_b.max.y_m);
+  if (!boxes_meet(bounds(a.outer), bounds(b.outer), 0)) return 0;
   const std::vector<Segment2> edges_a = edges_of(a), edges_b = edges_of(b);
-
-  std::vector<double> ys{low, high};
-  const auto add = [&](double y) {
-    if (y > low && y < high) ys.push_back(y);
-  };
-  for (const Segment2& e : edges_a) add(e.p.y_m);
-  for (const Segment2& e : edges_b) add(e.p.y_m);
-  const std::vector<Segment2> near_a = edges_in(edges_a, box_b), near_b = edges_in(edges_b, box_a);
-  Stretches rows = rows_of(near_b);
-  for (const Segment2& e : near_a) {
-    const Box2 box = box_of(e);
-    std::uint64_t compared = 1;
-    for (const std::uint32_t i : rows.touching(box.min.y_m - kBorderTolerance_m,
-                                               box.max.y_m + kBorderTolerance_m, compared)) {
-      if (const auto at = meeting_point(e, near_b[i])) add(at->y_m);
-    }
-    if (!steps.take(compared) || ys.size() > kMostHeights) return std::nullopt;
-  }
-  std::sort(ys.begin(), ys.end());
-  ys.erase(std::unique(ys.begin(), ys.end()), ys.end());
-
+  const std::optional<std::vector<double>> heights = strips_of(a, b, edges_a, edges_b, steps);
+  if (!heights) return std::nullopt;
+  const std::vector<double>& ys = *heights;
   double area = 0;
   PassingEdges passing_a(edges_a), passing_b(edges_b);
   for (std::size_t i = 0; i + 1 < ys.size(); ++i) {
@@ -169,6 +196,34 @@ std::optional<double> common_area_m2(const Polygon& a, const Polygon& b, Measuri
     if (!steps.take(1 + xs_a.size() + xs_b.size())) return std::nullopt;
   }
   return area;
+}
+
+std::vector<Ring> common_region(const Polygon& a, const Polygon& b, MeasuringSteps& steps) {
+  std::vector<Ring> pieces;
+  if (!boxes_meet(bounds(a.outer), bounds(b.outer), 0)) return pieces;
+  const std::vector<Segment2> edges_a = edges_of(a), edges_b = edges_of(b);
+  const std::optional<std::vector<double>> heights = strips_of(a, b, edges_a, edges_b, steps);
+  if (!heights) return pieces;
+  const std::vector<double>& ys = *heights;
+  PassingEdges passing_a(edges_a), passing_b(edges_b);
+  for (std::size_t i = 0; i + 1 < ys.size(); ++i) {
+    // No edges cross within a strip, so its spans just above the bottom and just below the top are
+    // the same ones in the same order.
+    const double inset = (ys[i + 1] - ys[i]) * 1e-6;
+    const auto low =
+        common_spans(passing_a.passes_at(ys[i] + inset), passing_b.passes_at(ys[i] + inset));
+    const auto high = common_spans(passing_a.passes_at(ys[i + 1] - inset),
+                                   passing_b.passes_at(ys[i + 1] - inset));
+    if (!steps.take(1 + low.size() + high.size()) || low.size() != high.size()) return pieces;
+    for (std::size_t k = 0; k < low.size(); ++k) {
+      if (pieces.size() == kMostRegionPieces) return pieces;
+      pieces.push_back({{low[k].first, ys[i]},
+                        {low[k].second, ys[i]},
+                        {high[k].second, ys[i + 1]},
+                        {high[k].first, ys[i + 1]}});
+    }
+  }
+  return pieces;
 }
 
 Polygon with_interior_on_the_left(Polygon polygon) {

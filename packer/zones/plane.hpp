@@ -48,6 +48,11 @@ std::vector<SelfCrossing> self_crossings(const Ring& ring, std::size_t most = kM
 // exact up to rounding. Each polygon must not cross itself. nullopt when the steps do not suffice.
 std::optional<double> common_area_m2(const Polygon& a, const Polygon& b, MeasuringSteps& steps);
 
+// The common area of the two as pieces between the same strips, for a picture: each a
+// quadrilateral, at most kMostRegionPieces; fewer when the steps do not suffice.
+inline constexpr std::size_t kMostRegionPieces = 400;
+std::vector<Ring> common_region(const Polygon& a, const Polygon& b, MeasuringSteps& steps);
+
 // Interior on the left of every edge: outer counter-clockwise, holes clockwise.
 Polygon with_interior_on_the_left(Polygon polygon);
 

@@ -12,6 +12,7 @@
 #include "packer/zones/plane.hpp"
 #include "packer/zones/shared_border.hpp"
 #include "packer/zones/zone_file.hpp"
+#include "platform/base/nearest_word.hpp"
 #include "runtime/pack_format/limits.hpp"
 
 namespace zonepack::packer {
@@ -67,9 +68,14 @@ class PortalPlacer {
         drawn_->name.empty()
             ? "portal of '" + drawn_->zones[0] + "' and '" + drawn_->zones[1] + "'" + feature
             : "portal '" + drawn_->name + "'" + feature;
-    findings_.faults.push_back({drawn_->feature, drawn_->line, drawn_->name, subject + message});
+    findings_.faults.push_back({drawn_->feature,
+                                drawn_->line,
+                                drawn_->name,
+                                subject + message,
+                                {{}, {drawn_->segment}, {}}});
   }
 
+  // A name that differs in case, blanks and dashes only, else the nearest one.
   std::string similar_name(const std::string& wanted) const {
     const auto folded = [](std::string text) {
       std::erase_if(text, [](char c) { return c == ' ' || c == '-' || c == '_'; });
@@ -81,7 +87,7 @@ class PortalPlacer {
     for (const std::string& name : drawn_names_) {
       if (folded(name) == folded(wanted)) return " (is it '" + name + "'?)";
     }
-    return "";
+    return known_words_text(wanted, {drawn_names_.begin(), drawn_names_.end()});
   }
 
   std::optional<Segment2> on_border(std::uint32_t a, std::uint32_t b) {

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kMaxDegreesExtent = 0.1;  // no building measures 10 cm
 constexpr double kFlat_m = 1e-6;
+constexpr std::size_t kMostPointsDrawn = 100;    // of one fault
 constexpr std::size_t kMostOutlineFaults = 100;  // of one outline
 
 std::string edge_text(const Ring& ring, std::size_t i) {
@@ -40,9 +41,9 @@ bool is_flat(const Ring& ring) noexcept {
 }
 
 // Adds what is wrong with one ring; true when it is sound.
-bool check_ring(const Ring& ring, const std::string& what, std::vector<std::string>& faults) {
+bool check_ring(const Ring& ring, const std::string& what, std::vector<OutlineFault>& faults) {
   if (is_flat(ring)) {
-    faults.push_back("has no area: its " + what + " is a line; draw around the room");
+    faults.push_back({"has no area: its " + what + " is a line; draw around the room"});
     return false;
   }
   const std::vector<SelfCrossing> crossings = self_crossings(ring);
@@ -55,13 +56,17 @@ bool check_ring(const Ring& ring, const std::string& what, std::vector<std::stri
                  std::to_string(crossings.size() - 1) + " more such place" +
                  (crossings.size() > 2 ? "s" : "");
     }
-    faults.push_back(message + "; put its vertices in order or delete the wrong one");
+    OutlineFault fault{message + "; put its vertices in order or delete the wrong one"};
+    fault.place.areas.push_back(ring);
+    for (const SelfCrossing& crossing : crossings) {
+      if (fault.place.points.size() < kMostPointsDrawn) fault.place.points.push_back(crossing.at);
+    }
+    faults.push_back(std::move(fault));
     return false;
   }
   if (area_m2({ring, {}}) < kMinZoneArea_m2) {
-    faults.push_back("has no area: its " + what +
-                     " encloses less than 1 cm2; are the coordinates in "
-                     "metres?");
+    faults.push_back(
+        {"has no area: its " + what + " encloses less than 1 cm2; are the coordinates in metres?"});
     return false;
   }
   return true;
@@ -98,11 +103,14 @@ bool check_overlap(const DrawnZone& a, const DrawnZone& b, MeasuringSteps& steps
   if (common <= kMaxOverlap * smaller) return true;
   const std::string& small_name = area_b <= area_a ? b.zone.name : a.zone.name;
   findings.faults.push_back(
-      {b.feature, b.line, b.zone.name,
+      {b.feature,
+       b.line,
+       b.zone.name,
        "zones '" + a.zone.name + "' and '" + b.zone.name + "' overlap by " + number_text(common) +
            " m2, " + number_text(100 * common / smaller) + " % of '" + small_name +
            "'; at most 1 % is allowed: move the border that they share, or give zones on different "
-           "floors z_min and z_max"});
+           "floors z_min and z_max",
+       {common_region(a.zone.polygon, b.zone.polygon, steps), {}, {}}});
   return true;
 }
 
@@ -164,13 +172,13 @@ void check_extent(const Drawing& drawing, Findings& findings) {
 
 }  // namespace
 
-std::vector<std::string> outline_faults(const Polygon& polygon) {
-  std::vector<std::string> faults;
+std::vector<OutlineFault> outline_faults(const Polygon& polygon) {
+  std::vector<OutlineFault> faults;
   const std::uint64_t vertices = vertices_of(polygon);
   if (vertices > kMaxVerticesPerZone) {
-    faults.push_back("has " + std::to_string(vertices) + " vertices; at most " +
-                     std::to_string(kMaxVerticesPerZone) +
-                     " are allowed: simplify it (QGIS: Vector > Geometry Tools > Simplify)");
+    faults.push_back({"has " + std::to_string(vertices) + " vertices; at most " +
+                      std::to_string(kMaxVerticesPerZone) +
+                      " are allowed: simplify it (QGIS: Vector > Geometry Tools > Simplify)"});
     return faults;
   }
   if (!check_ring(polygon.outer, "outline", faults)) return faults;
@@ -183,26 +191,28 @@ std::vector<std::string> outline_faults(const Polygon& polygon) {
     const Polygon hole{polygon.holes[i], {}};
     const std::optional<double> inside = common_area_m2(hole, outer, steps);
     if (!inside || faults.size() > kMostOutlineFaults) {
-      faults.push_back("has holes that cross its outline or each other in too many places, " +
-                       what +
-                       " among them; simplify it (QGIS: Vector > Geometry Tools > Simplify)");
+      faults.push_back({"has holes that cross its outline or each other in too many places, " +
+                        what +
+                        " among them; simplify it (QGIS: Vector > Geometry Tools > Simplify)"});
       return faults;
     }
     if (area_m2(hole) - *inside > kMinZoneArea_m2) {
-      faults.push_back("has a hole outside its outline: " + what + " near " +
-                       point_text(hole.outer[0]) + "; move the hole inside or delete it");
+      faults.push_back({"has a hole outside its outline: " + what + " near " +
+                            point_text(hole.outer[0]) + "; move the hole inside or delete it",
+                        {{hole.outer}, {}, {}}});
       continue;
     }
     for (const auto& [other, placed] : sound) {
       if (common_area_m2(hole, placed, steps).value_or(0) > kMinZoneArea_m2) {
-        faults.push_back("has holes that overlap: hole " + std::to_string(other + 1) + " and " +
-                         what + " near " + point_text(hole.outer[0]) + "; merge them");
+        faults.push_back({"has holes that overlap: hole " + std::to_string(other + 1) + " and " +
+                              what + " near " + point_text(hole.outer[0]) + "; merge them",
+                          {{hole.outer}, {}, {}}});
       }
     }
     sound.emplace_back(i, hole);
   }
   if (faults.empty() && area_m2(polygon) < kMinZoneArea_m2) {
-    faults.push_back("has no area: its holes take all of it; delete them");
+    faults.push_back({"has no area: its holes take all of it; delete them"});
   }
   return faults;
 }

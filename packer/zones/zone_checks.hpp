@@ -11,9 +11,15 @@
 // The rules for zones, each on its own and together.
 namespace zonepack::packer {
 
-// What is wrong with one outline, as ends of sentences about its zone: it crosses itself, has no
-// area, a hole leaves it or meets another hole, too many vertices. Empty when it is sound.
-std::vector<std::string> outline_faults(const Polygon& polygon);
+// What is wrong with one outline: the end of a sentence about its zone, and where.
+struct OutlineFault {
+  std::string message;
+  FindingPlace place = {};
+};
+
+// It crosses itself, has no area, a hole leaves it or meets another hole, too many vertices. Empty
+// when it is sound.
+std::vector<OutlineFault> outline_faults(const Polygon& polygon);
 
 // Reports duplicate names, zones that overlap by more than kMaxOverlap (unless their heights
 // differ), and a drawing so small that it must be in degrees.

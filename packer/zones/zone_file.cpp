@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -25,14 +26,27 @@ namespace zonepack::packer {
 namespace {
 
 std::string read_text(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) {
+    throw std::runtime_error(path + ": cannot read the zone file: " + std::strerror(ENOENT) +
+                             "; expected GeoJSON");
+  }
+  if (fs::is_directory(status)) {
+    throw std::runtime_error(path + ": is a folder, expected a GeoJSON file with the zones");
+  }
   std::ifstream file(path, std::ios::binary);
-  std::error_code no_size;
-  const std::uintmax_t size = std::filesystem::file_size(path, no_size);
-  if (!no_size && size > kMaxZoneFileBytes) {
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (!error && size > kMaxZoneFileBytes) {
     throw std::runtime_error(path + ": is " + std::to_string(size) +
                              " bytes long, a zone file has at most " +
                              std::to_string(kMaxZoneFileBytes) +
                              "; simplify the outlines (QGIS: Vector > Geometry Tools > Simplify)");
+  }
+  if (!error && size == 0) {
+    throw std::runtime_error(
+        path + ": cannot read the zone file: it is empty (0 bytes); expected GeoJSON");
   }
   std::ostringstream text;
   if (file) text << file.rdbuf();
@@ -42,8 +56,11 @@ std::string read_text(const std::string& path) {
                              "; expected GeoJSON");
   }
   std::string bytes = std::move(text).str();
-  if (const std::string kind = stand_in(bytes); !kind.empty()) {
+  if (const std::string kind = stand_in(bytes, path); !kind.empty()) {
     throw std::runtime_error(path + ": is " + kind + "; expected GeoJSON");
+  }
+  if (const std::string kind = known_kind(bytes, path); !kind.empty()) {
+    throw std::runtime_error(path + ": is " + kind + ", not a zone file; expected GeoJSON");
   }
   return bytes;
 }
@@ -74,6 +91,31 @@ void warn_of_unreachable(const ZonePlan& plan, const Drawing& drawing, Findings&
     }
     findings.warnings.push_back(std::move(warning));
   }
+}
+
+// Findings about a feature, or about a zone by name, are where it was drawn.
+void locate(const Drawing& drawing, Findings& findings) {
+  std::map<std::size_t, FindingPlace> by_feature;
+  std::map<std::string, FindingPlace> by_name;
+  for (const DrawnZone& drawn : drawing.zones) {
+    if (drawn.zone.polygon.outer.empty()) continue;
+    const FindingPlace place{{drawn.zone.polygon.outer}, {}, {}};
+    by_feature.emplace(drawn.feature, place);
+    by_name.emplace(drawn.zone.name, place);
+  }
+  for (const DrawnPortal& drawn : drawing.portals) {
+    by_feature.emplace(drawn.feature, FindingPlace{{}, {drawn.segment}, {}});
+  }
+  const auto place_of = [&](const Finding& finding) {
+    if (finding.feature) {
+      const auto found = by_feature.find(*finding.feature);
+      return found == by_feature.end() ? FindingPlace{} : found->second;
+    }
+    const auto found = by_name.find(finding.name);
+    return finding.name.empty() || found == by_name.end() ? FindingPlace{} : found->second;
+  };
+  findings.faults.locate(place_of);
+  findings.warnings.locate(place_of);
 }
 
 void check_portal_counts(const ZonePlan& plan, Findings& findings) {
@@ -109,6 +151,7 @@ ZoneFile parse_zone_file(std::string_view text, double snap_m) {
   sort_by_name(plan);
   check_portal_counts(plan, findings);
   if (findings.faults.empty()) warn_of_unreachable(plan, drawing, findings);
+  locate(drawing, findings);
   return result;
 }
 

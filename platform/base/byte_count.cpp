@@ -2,6 +2,7 @@
 #include "platform/base/byte_count.hpp"
 
 #include <charconv>
+#include <cstdio>
 #include <limits>
 
 namespace zonepack {
@@ -63,6 +64,18 @@ std::string format_byte_count(ByteCount bytes) {
     }
   }
   return std::to_string(bytes);
+}
+
+std::string short_bytes(ByteCount bytes) {
+  if (bytes < kKiB) return std::to_string(bytes) + " B";
+  char text[32];
+  const double kib = static_cast<double>(bytes) / static_cast<double>(kKiB);
+  if (kib < 1023.5) {
+    std::snprintf(text, sizeof text, "%.0f KiB", kib);
+  } else {
+    std::snprintf(text, sizeof text, "%.2f MiB", kib / 1024);
+  }
+  return text;
 }
 
 }  // namespace zonepack

@@ -22,4 +22,7 @@ std::optional<ByteCount> parse_byte_count(std::string_view text) noexcept;
 // The shortest exact SIZE ("8MiB"; "8388609").
 std::string format_byte_count(ByteCount bytes);
 
+// A size for people, rounded to a table's width: "512 B", "20 KiB", "1.50 MiB".
+std::string short_bytes(ByteCount bytes);
+
 }  // namespace zonepack

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "platform/base/failure.hpp"
 
+#include <cerrno>
 #include <cstring>
 #include <iostream>
 
 namespace zonepack {
 
 Failure cannot_write(const std::string& file, const Error& error) {
-  return {error.code, file + ": cannot be written: " + reason_text(error)};
+  std::string message = file + ": cannot be written: " + reason_text(error);
+  if (error.code == ErrorCode::kIo && error.detail == ENXIO) {
+    message += "; where it is a FIFO, nobody reads it: start its reader first";
+  }
+  return {error.code, std::move(message)};
 }
 
 void Failures::add(const Failure& failure) {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "platform/linux/last_error.hpp"
+#include "platform/output_place.hpp"
 
 namespace zonepack {
 namespace {
@@ -24,12 +25,6 @@ std::string part_name(const std::string& path) {
   static std::atomic<unsigned> counter{0};
   return path + std::string(kPartMark) + std::to_string(::getpid()) + "-" +
          std::to_string(counter.fetch_add(1));
-}
-
-std::string folder_of(const std::string& path) {
-  const std::size_t slash = path.rfind('/');
-  if (slash == std::string::npos) return ".";
-  return slash == 0 ? "/" : path.substr(0, slash);
 }
 
 // Replacing a device or a pipe with a file would take it away from every program; as root, even
@@ -67,15 +62,21 @@ std::size_t skip_digits(std::string_view text, std::size_t at) noexcept {
 
 Result<AtomicFile> AtomicFile::create(std::string path) {
   if (is_written_in_place(path)) {
-    const int fd = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOCTTY);
-    if (fd < 0) return last_error();
-    return AtomicFile(fd, std::move(path), {});
+    auto file = open_in_place(path, false);
+    if (!file) return file.error();
+    return AtomicFile(file->release(), std::move(path), {});
   }
   path = behind_links(std::move(path));
   std::string part = part_name(path);
   const int fd = ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (fd < 0) return last_error();
   return AtomicFile(fd, std::move(path), std::move(part));
+}
+
+Result<AtomicFile> AtomicFile::standard_output() {
+  const int fd = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+  if (fd < 0) return last_error();
+  return AtomicFile(fd, {}, {});
 }
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
@@ -113,7 +114,7 @@ Result<void> AtomicFile::commit_as(const std::string& path) {
   if (in_place) return {};
   if (std::rename(part_.c_str(), path.c_str()) != 0) return last_error();
   part_.clear();
-  return sync_folder(folder_of(path));
+  return sync_folder(folder_of_path(path));
 }
 
 bool is_part_name(std::string_view name) noexcept {

@@ -2,6 +2,7 @@
 #include "platform/descriptor.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -24,6 +25,11 @@ Result<Descriptor> Descriptor::share() const noexcept {
   Descriptor copy(::fcntl(fd_, F_DUPFD_CLOEXEC, 0));
   if (!copy.is_open()) return {ErrorCode::kIo, errno};
   return copy;
+}
+
+bool takes_a_line_now(int fd) noexcept {
+  pollfd entry{fd, POLLOUT, 0};
+  return ::poll(&entry, 1, 0) > 0;
 }
 
 Result<void> write_all(int fd, std::span<const std::byte> bytes) noexcept {

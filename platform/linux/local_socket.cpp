@@ -148,7 +148,8 @@ PeerCredentials LocalSocket::peer() const noexcept {
   return {credentials.pid, credentials.uid, credentials.gid};
 }
 
-Result<LocalListener> LocalListener::listen(const std::string& path, unsigned mode) {
+Result<LocalListener> LocalListener::listen(const std::string& path, unsigned mode,
+                                            std::optional<std::uint32_t> group) {
   sockaddr_un address{};
   if (!address_of(path, address)) {
     return {ErrorCode::kTooLarge, static_cast<std::int64_t>(path.size())};
@@ -159,6 +160,7 @@ Result<LocalListener> LocalListener::listen(const std::string& path, unsigned mo
   // No process can connect before listen(), so the mode is set in time.
   if (::bind(fd.get(), generic(address), sizeof address) != 0) return io_error();
   LocalListener listener(std::move(fd), path);
+  if (group && ::chown(path.c_str(), static_cast<uid_t>(-1), *group) != 0) return io_error();
   if (::chmod(path.c_str(), static_cast<mode_t>(mode)) != 0) return io_error();
   if (::listen(listener.fd(), kQueue) != 0) return io_error();
   return listener;

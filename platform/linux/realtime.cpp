@@ -5,7 +5,6 @@
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
-#include <sys/mman.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -148,18 +147,11 @@ void Thread::interrupt() noexcept {
   if (handled) pthread_kill(handle_, SIGUSR2);
 }
 
-Result<void> lock_memory_now() noexcept {
-  if (mlockall(MCL_CURRENT) != 0) return {ErrorCode::kIo, errno};
-  return {};
-}
-
 bool thread_is_realtime() noexcept {
   int policy = 0;
   sched_param parameters{};
   return pthread_getschedparam(pthread_self(), &policy, &parameters) == 0 && policy == SCHED_FIFO;
 }
-
-void unlock_memory() noexcept { munlockall(); }
 
 void use_one_heap(std::size_t present_bytes) noexcept {
   mallopt(M_ARENA_MAX, 1);

@@ -70,7 +70,7 @@ void Listener::take(const CanFrame& frame) {
       watched.meter.add(frame.stamp_ns, watched.trace.moved());
     }
   }
-  const CanId id{frame.id, frame.extended};
+  const MessageId id(frame.id, frame.extended);
   if (!named) {
     const auto known = ids_.find(id);
     if (known != ids_.end()) {
@@ -126,7 +126,8 @@ ListenPicture::Row Listener::row_of(const Watched& watched, std::int64_t now_ns,
 
 void Listener::add_others(std::int64_t now_ns, bool whole, ListenPicture& picture) const {
   const std::vector<CanId> watched = odometry_ids(settings_.odometry.wheels);
-  for (const auto& [id, meter] : ids_) {
+  for (const auto& [number, meter] : ids_) {
+    const CanId id{number.first, number.second};
     if (std::find(watched.begin(), watched.end(), id) != watched.end()) continue;
     picture.others.push_back(
         {id, "", meter.count(), whole ? meter.mean_rate_hz() : meter.rate_hz(now_ns)});
@@ -138,7 +139,7 @@ void Listener::add_others(std::int64_t now_ns, bool whole, ListenPicture& pictur
     picture.others.resize(kMostOthers);
   }
   for (ListenPicture::Other& other : picture.others) {
-    const auto name = names_.find(other.id);
+    const auto name = names_.find({other.id.id, other.id.extended});
     if (name != names_.end()) other.name = name->second;
   }
 }

@@ -87,10 +87,10 @@ class Listener {
 
   const Settings& settings_;
   std::optional<ExpectedMotion> expected_;
-  std::map<CanId, std::string> names_;  // of messages
+  std::map<MessageId, std::string> names_;  // of messages
   WheelWatch wheels_;
   std::vector<Watched> watched_;
-  std::map<CanId, SignalMeter> ids_;  // that no setting names
+  std::map<MessageId, SignalMeter> ids_;  // that no setting names
   std::uint64_t frames_ = 0, error_frames_ = 0, samples_ = 0;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
   Pose2 pose_;

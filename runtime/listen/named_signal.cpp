@@ -115,12 +115,12 @@ std::vector<NamedSignal> named_signals(const Settings& settings) {
   return all;
 }
 
-std::map<CanId, std::string> message_names(const Settings& settings) {
-  std::map<CanId, std::string> names;
+std::map<MessageId, std::string> message_names(const Settings& settings) {
+  std::map<MessageId, std::string> names;
   if (settings.can.dbc.empty()) return names;
   const LoadedDbc dbc = parse_dbc(settings.can.dbc_text, settings.can.dbc);
   for (const DbcMessage& message : dbc.file.messages()) {
-    names.emplace(CanId{message.id, message.extended}, message.name);
+    names.emplace(MessageId(message.id, message.extended), message.name);
   }
   return names;
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runtime/odometry/can_signals.hpp"
@@ -28,8 +30,10 @@ struct NamedSignal {
 // Those of odometry in the order of the model, then the others of can.signals.
 std::vector<NamedSignal> named_signals(const Settings& settings);
 
+using MessageId = std::pair<std::uint32_t, bool>;  // id, 29 bits
+
 // The messages of the DBC file: 0x221 is "Motion".
-std::map<CanId, std::string> message_names(const Settings& settings);
+std::map<MessageId, std::string> message_names(const Settings& settings);
 
 // Text for a terminal: well-formed UTF-8 without control characters.
 std::string printable(std::string_view text);

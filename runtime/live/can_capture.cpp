@@ -7,6 +7,7 @@
 
 #include "platform/can_log_line.hpp"
 #include "platform/clock.hpp"
+#include "platform/output_place.hpp"
 
 namespace zonepack {
 namespace {
@@ -24,8 +25,11 @@ CanCapture::CanCapture(CanBus& bus, std::string interface, std::int64_t clock_of
       line_(kCanLogLineRoom + interface_.size() + 1, '\0') {}
 
 Result<void> CanCapture::open(const std::string& path) {
-  file_.reset(std::fopen(path.c_str(), "wb"));
+  auto opened = open_in_place(path, true);
+  if (!opened) return opened.error();
+  file_.reset(::fdopen(opened->get(), "wb"));
   if (!file_) return {ErrorCode::kIo, errno};
+  (void)opened->release();  // the stream closes it
   return {};
 }
 

@@ -11,8 +11,8 @@
 #include <sstream>
 #include <utility>
 
+#include "platform/base/nearest_word.hpp"
 #include "runtime/settings/field.hpp"
-#include "runtime/settings/nearest_word.hpp"
 #include "runtime/settings/odometry_section.hpp"
 #include "runtime/settings/yaml_limits.hpp"
 #include "runtime/settings/yaml_section.hpp"

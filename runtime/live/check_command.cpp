@@ -6,8 +6,11 @@
 #include <iostream>
 #include <vector>
 
+#include "platform/account.hpp"
+#include "platform/base/counted.hpp"
 #include "platform/base/failure.hpp"
 #include "platform/board.hpp"
+#include "platform/output_place.hpp"
 #include "platform/realtime.hpp"
 #include "platform/shared_memory.hpp"
 #include "runtime/live/line_requests.hpp"
@@ -17,6 +20,7 @@
 #include "runtime/memory/shared_layout.hpp"
 #include "runtime/run/log_match.hpp"
 #include "runtime/run/map_model.hpp"
+#include "runtime/settings/socket_place.hpp"
 
 namespace zonepack {
 namespace {
@@ -38,7 +42,9 @@ class Check {
     if (settings_and_map() && budget()) {
       packs();
       memory();
+      socket();
     }
+    outputs();
     source();
     lines();
     scheduler();
@@ -70,8 +76,7 @@ class Check {
     for (const std::string& text : inputs_.warnings) {
       rows_.push_back({Row::Kind::kWeak, "settings", text, ""});
     }
-    good("map",
-         inputs_.catalog.folder + ", " + std::to_string(inputs_.catalog.zones.size()) + " zones");
+    good("map", inputs_.catalog.folder + ", " + counted(inputs_.catalog.zones.size(), "zone"));
     return true;
   }
 
@@ -85,7 +90,8 @@ class Check {
     if (map_->warning) {
       rows_.push_back({Row::Kind::kWeak, "budget", *map_->warning, "see zonepack plan"});
     } else {
-      good("budget", std::to_string(map_->limits.budget) + " bytes");
+      good("budget",
+           short_bytes(map_->limits.budget) + " (" + counted(map_->limits.budget, "byte") + ")");
     }
     Residency trial(map_->needs.size(), map_->limits);
     if (const auto pinned = map_->pin(trial); !pinned) {
@@ -101,7 +107,7 @@ class Check {
       refuse("packs", load_fault(inputs_.catalog, zone, pack.error()));
       return;
     }
-    good("packs", "all " + std::to_string(inputs_.catalog.zones.size()) + " there, at full length");
+    good("packs", counted(inputs_.catalog.zones.size(), "pack") + ", all there at full length");
   }
 
   void memory() {
@@ -111,7 +117,7 @@ class Check {
       refuse("memory", reason_text(memory.error()), "allow less by memory.budget");
       return;
     }
-    good("memory", std::to_string(memory->read_only().size()) + " bytes reserved for a moment");
+    good("memory", short_bytes(memory->read_only().size()) + " reserved for a moment");
     if (!inputs_.settings.realtime.lock_memory) return;
     const auto locked = lock_memory_now();
     if (locked) {
@@ -121,6 +127,32 @@ class Check {
                        "LimitMEMLOCK=infinity in the unit, or realtime.lock_memory: false");
     }
     unlock_memory();
+  }
+
+  // Where others are served. A folder that is missing is made by the run, in one that is there.
+  void socket() {
+    const ServeSettings& serve = inputs_.settings.serve;
+    const std::string path = listening_socket(arguments_.socket, serve);
+    if (path.empty()) return good("socket", "none: nobody is served");
+    const std::string folder = folder_of_path(path);
+    auto possible = check_output_place(path);
+    if (!possible && possible.error().code == ErrorCode::kNotFound) {
+      possible = check_output_place(folder);
+    }
+    if (!possible) {
+      return refuse("socket", path + ": cannot be made in " + folder,
+                    "make the folder, or name another place: serve.socket, --socket PATH");
+    }
+    if (!serve.group.empty() && !group_number(serve.group)) {
+      return refuse("socket", path + ": there is no group \"" + serve.group + "\"",
+                    "groupadd --system " + serve.group + ", or another serve.group");
+    }
+    good("socket", path);
+  }
+
+  void outputs() {
+    const auto possible = check_run_outputs(arguments_);
+    if (!possible) refuse("outputs", possible.error().message);
   }
 
   void source() {

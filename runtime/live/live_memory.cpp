@@ -1,25 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/live/live_memory.hpp"
 
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 
 #include "platform/base/failure.hpp"
 
 namespace zonepack {
 
-std::string socket_path(const ServeSettings& settings) {
-  const char* const given = std::getenv("ZONED_SOCKET");
-  return given != nullptr ? given : settings.socket;
-}
-
 Outcome<void> LiveMemory::share(const Choice& choice) {
   const std::filesystem::path folder = std::filesystem::path(choice.socket).parent_path();
   std::error_code ignored;
   std::filesystem::create_directory(folder, ignored);
   ArenaMemory::Source source{(folder / "zoned.lock").string()};
-  if (!choice.must_serve) source.wait = std::chrono::milliseconds(0);
+  if (!choice.may_wait) source.wait = std::chrono::milliseconds(0);
   source.manager = choice.manager;
   source.handed = choice.handed;
   auto arena = ArenaMemory::obtain(shared_map_bytes(choice.zones, choice.slots), source);
@@ -42,8 +35,11 @@ Outcome<std::unique_ptr<LiveMemory>> LiveMemory::open(const Choice& choice) {
   std::unique_ptr<LiveMemory> made(new LiveMemory());
   if (!choice.socket.empty()) {
     if (const auto shared = made->share(choice); !shared) {
-      if (choice.must_serve) return shared.error();
-      made->warning_ = "nobody is served: " + shared.error().message;
+      return failure("socket " + choice.socket +
+                         ": nobody can be served: " + shared.error().message +
+                         "; --socket PATH (serve.socket) takes another place, --socket \"\" serves "
+                         "nobody",
+                     shared.error().code);
     }
   }
   if (!made->arena_) {

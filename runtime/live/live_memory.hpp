@@ -12,7 +12,6 @@
 #include "platform/shared_memory.hpp"
 #include "runtime/memory/arena_memory.hpp"
 #include "runtime/memory/shared_map.hpp"
-#include "runtime/settings/serve_settings.hpp"
 
 namespace zonepack {
 
@@ -22,16 +21,13 @@ class LiveMemory {
   struct Choice {
     std::uint32_t zones = 0, slots = 0;  // to have room for
     std::string socket;                  // empty: nobody is served
-    bool must_serve = true;  // false: goes on without where the socket's folder is taken
+    bool may_wait = true;                // for an earlier zoned that is ending, and its readers
     const Notifier* manager = nullptr;
     std::vector<HandedFile>* handed = nullptr;
   };
 
-  // Never null.
+  // Never null. Fails when somebody is to be served, and the memory cannot be shared.
   static Outcome<std::unique_ptr<LiveMemory>> open(const Choice& choice);
-
-  // Why the run goes on unserved: a complete message, or empty.
-  const std::string& warning() const noexcept { return warning_; }
 
   SharedMap& map() noexcept { return *map_; }
   bool served() const noexcept { return arena_.has_value(); }
@@ -47,10 +43,6 @@ class LiveMemory {
   std::optional<SharedMemory> own_;
   std::optional<SharedMap> map_;
   Descriptor reader_, presence_;
-  std::string warning_;
 };
-
-// Where zoned is to be reached: $ZONED_SOCKET, else as the settings say.
-std::string socket_path(const ServeSettings& settings);
 
 }  // namespace zonepack

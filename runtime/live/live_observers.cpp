@@ -12,13 +12,14 @@ constexpr std::size_t kNotes = 2048;
 
 }  // namespace
 
-LiveObservers::LiveObservers(Run& run, LiveControl& control, LiveMemory& memory)
+LiveObservers::LiveObservers(Run& run, LiveControl& control, LiveMemory& memory, bool quiet)
     : notes(kNotes),
       events(notes, memory.served() ? &service.events : nullptr, control.overload),
       log_thread(notes, run),
       run_(run),
       control_(control),
-      memory_(memory) {
+      memory_(memory),
+      messages_(quiet) {
   run.add_observer(recording);
   run.add_observer(messages_);
 }
@@ -67,10 +68,9 @@ Outcome<void> LiveObservers::open_recording(const RecordingChoice& choice,
   return {};
 }
 
-Outcome<void> LiveObservers::open_service(const ServeSettings& settings, const LineBoard& lines) {
+Outcome<void> LiveObservers::open_service(const ServeSettings& settings, const LineBoard& lines,
+                                          const BuildInfo& build) {
   if (!memory_.served()) return {};
-  ServeSettings reached = settings;
-  reached.socket = socket_path(settings);
   service.lines = &lines;
   std::function<Result<std::uint64_t>(BoundedWriter&)> dump;
   if (FlightRecorder* const flight = recording.flight()) {
@@ -80,8 +80,8 @@ Outcome<void> LiveObservers::open_service(const ServeSettings& settings, const L
       return dumped->bytes;
     };
   }
-  return service.open(reached, control_.status, memory_, run_.find(run_.accounted_map().number()),
-                      std::move(dump));
+  return service.open(settings, control_.status, memory_, run_.find(run_.accounted_map().number()),
+                      std::move(dump), build);
 }
 
 Outcome<void> LiveObservers::start() {

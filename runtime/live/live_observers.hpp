@@ -29,8 +29,8 @@ namespace zonepack {
 // Threads: events is the control thread's; each member's own contract; all else the owner's.
 class LiveObservers {
  public:
-  // All of it must outlive this object.
-  LiveObservers(Run& run, LiveControl& control, LiveMemory& memory);
+  // All of it must outlive this object. quiet: only warnings are printed.
+  LiveObservers(Run& run, LiveControl& control, LiveMemory& memory, bool quiet);
   ~LiveObservers();
 
   // Reads what the robot knew when it stopped, and arranges to save what it knows. folder: empty:
@@ -40,7 +40,8 @@ class LiveObservers {
   Outcome<void> open_recording(const RecordingChoice& choice, const RecordingPreface& preface,
                                std::uint32_t most_frames);
   // Starts to listen, if the memory is served.
-  Outcome<void> open_service(const ServeSettings& settings, const LineBoard& lines);
+  Outcome<void> open_service(const ServeSettings& settings, const LineBoard& lines,
+                             const BuildInfo& build);
 
   // Starts the threads that wait for control's notes; before control.
   Outcome<void> start();

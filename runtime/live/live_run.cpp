@@ -33,7 +33,7 @@ LiveRun::LiveRun(RunInputs& inputs, std::shared_ptr<MapVersion> map, LiveMemory&
             .truth = inputs.truth ? &*inputs.truth : nullptr,
             .events = options_.events},
            std::move(map)),
-      observers_(run_, control_, memory),
+      observers_(run_, control_, memory, options_.quiet),
       lines_(kernel_gpio(), settings_.gpio) {}
 
 // After a start that failed half way, threads may still use what is destroyed before them.
@@ -74,7 +74,7 @@ Outcome<void> LiveRun::open_control() {
   opened = observers_.open_recording(options_.recording, std::exchange(options_.preface, {}),
                                      settings_.cycle.most_frames);
   if (!opened) return opened;
-  opened = observers_.open_service(settings_.serve, lines_.board);
+  opened = observers_.open_service(settings_.serve, lines_.board, options_.build);
   if (!opened) return opened;
 
   Service& service = observers_.service;

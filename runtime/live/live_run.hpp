@@ -29,6 +29,8 @@ struct LiveOptions {
   std::string record_can;  // file; empty: none
   RecordingChoice recording;
   RecordingPreface preface;  // without the start
+  BuildInfo build;
+  bool quiet = false;  // only warnings and errors on standard error
   bool allow_degraded = false;
 };
 

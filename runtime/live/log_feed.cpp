@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kFramesAhead = 4096;
 constexpr std::size_t kCorrectionsAhead = 256;
-constexpr std::size_t kNotesOfACycle = 256;  // far more than a cycle ever makes
+constexpr std::size_t kStackBytes = std::size_t{64} * 1024;  // it parses lines, and calls little
+constexpr std::size_t kNotesOfACycle = 256;                  // far more than a cycle ever makes
 constexpr std::int64_t kNap_ns = 50'000;
 
 void nap() noexcept { sleep_until_ns(monotonic_ns() + kNap_ns); }
@@ -32,7 +33,8 @@ Result<void> LogFeed::start() {
   first_ = source_.next();
   if (!first_) return ErrorCode::kNotFound;
   start_ns_ = first_->stamp_ns;
-  auto thread = Thread::start({.name = "zoned-feed"}, true, [this] { run(); });
+  auto thread =
+      Thread::start({.name = "zoned-feed", .stack_bytes = kStackBytes}, true, [this] { run(); });
   if (!thread) return thread.error();
   thread_ = std::move(thread).value();
   return {};

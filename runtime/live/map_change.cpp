@@ -65,7 +65,8 @@ Outcome<std::shared_ptr<MapVersion>> MapChange::make_next(const MapVersion& in_u
   const std::string path = folder + "/" + std::string(kManifestName);
   const ByteCount room = in_use.model().room_for_next();
   auto manifest = read_manifest_file(folder, room, ReadMode::kBuffered);
-  auto catalog = manifest ? Catalog::read(*manifest, folder, in_use.catalog().payload, room)
+  std::string why;
+  auto catalog = manifest ? Catalog::read(*manifest, folder, in_use.catalog().payload, room, &why)
                           : Result<Catalog>(manifest.error());
   if (!catalog && catalog.error().code == ErrorCode::kTooLarge && catalog.error().detail > 0) {
     return failure(path + ": reading it and holding its tables beside the map in use takes " +
@@ -77,10 +78,12 @@ Outcome<std::shared_ptr<MapVersion>> MapChange::make_next(const MapVersion& in_u
   }
   if (!catalog) {
     const Error& error = catalog.error();
-    return failure(
-        path + ": " + to_string(error.code) + " (" + std::to_string(error.detail) +
-            "), expected a manifest as zonepack build writes it; copy it again, as the last file",
-        error.code);
+    if (const auto excess = excess_of(error)) why = to_string(*excess);
+    if (why.empty()) why = reason_text(error);
+    return failure(path + ": " + why +
+                       "; expected a manifest as zonepack build writes it: copy it again, as the "
+                       "last file, or build the map again",
+                   error.code);
   }
   const auto checked = check_next_version(in_use.catalog(), *catalog, ports_.settings.loading.read);
   if (!checked) return checked.error();

@@ -16,7 +16,9 @@
 #include "runtime/pack_format/file/manifest_file.hpp"
 #include "runtime/run/log_faults.hpp"
 #include "runtime/run/log_time.hpp"
+#include "runtime/run/output_check.hpp"
 #include "runtime/run/summary_text.hpp"
+#include "runtime/settings/socket_place.hpp"
 
 namespace zonepack {
 namespace {
@@ -76,7 +78,7 @@ Outcome<void> conclude(const RunArguments& arguments, LiveRun& run) {
     tell_log_faults(arguments.source.name, *log);
     summary->can_rejected += log->broken_lines + log->stray_stamps;
   }
-  failed.add(write_summary(*summary, arguments.json));
+  failed.add(write_summary(*summary, arguments.json, arguments.events == "-"));
   failed.add(check_limits(*summary));
   return failed.all();
 }
@@ -106,12 +108,11 @@ Outcome<void> drive(const RunArguments& arguments, RunInputs& inputs,
   const auto memory =
       LiveMemory::open({.zones = zones_with_room_for_another_map(model.needs.size()),
                         .slots = model.slots,
-                        .socket = socket_path(inputs.settings.serve),
-                        .must_serve = arguments.source.kind == CanSourceChoice::Kind::kSocketCan,
+                        .socket = inputs.settings.serve.socket,
+                        .may_wait = arguments.source.kind == CanSourceChoice::Kind::kSocketCan,
                         .manager = &notifier,
                         .handed = &handed});
   if (!memory) return memory.error();
-  if (const std::string& warning = (*memory)->warning(); !warning.empty()) warn(warning);
 
   auto preface = make_preface(arguments, inputs, (*map)->catalog(), terms);
   if (!preface) return preface.error();
@@ -124,6 +125,8 @@ Outcome<void> drive(const RunArguments& arguments, RunInputs& inputs,
                              .state_folder = state_folder(inputs.settings),
                              .flight_bytes = inputs.settings.recorder.bytes},
                .preface = std::move(*preface),
+               .build = {arguments.program, arguments.commit},
+               .quiet = arguments.quiet,
                .allow_degraded = arguments.allow_degraded});
   if (const auto started = run.start(); !started) return started.error();
   run.wait();
@@ -139,6 +142,7 @@ Outcome<void> run_and_report(const RunArguments& arguments) {
     return usage_failure(
         "--corrections and --truth are on the time of a log, which socketcan: has not");
   }
+  if (auto possible = check_run_outputs(arguments); !possible) return possible;
   hold_signals();
   use_one_heap(kHeapBytes);
   auto inputs = read_run_inputs(arguments);
@@ -154,11 +158,20 @@ Outcome<void> run_and_report(const RunArguments& arguments) {
     }
     if (inputs->truth) inputs->truth = time.on_first_clock(*inputs->truth);
   }
-  EndGuard guard({socket_path(inputs->settings.serve), inputs->settings.serve.looking_socket});
+  ServeSettings& serve = inputs->settings.serve;
+  serve.socket = listening_socket(arguments.socket, serve);
+  EndGuard guard({serve.socket, inputs->settings.serve.looking_socket});
   return drive(arguments, *inputs, handed, guard);
 }
 
 }  // namespace
+
+Outcome<void> check_run_outputs(const RunArguments& arguments) {
+  return check_outputs({{"--events", arguments.events, true},
+                        {"--json", arguments.json, true},
+                        {"--record", arguments.record},
+                        {"--record-can", arguments.record_can}});
+}
 
 int run_live(const RunArguments& arguments) {
   const auto done = run_and_report(arguments);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "platform/base/failure.hpp"
 #include "runtime/live/can_source.hpp"
 #include "runtime/run/run_inputs.hpp"
 
@@ -13,10 +15,16 @@ struct RunArguments : RunChoices {
   CanSourceChoice source;
   std::string events, json;  // json "-": standard output
   std::string record, record_can;
-  std::string program;  // version, for recordings
+  std::optional<std::string> socket;  // over ZONED_SOCKET and the settings; empty: none
+  std::string program;                // version, for recordings and those who ask
+  std::string commit;
   bool allow_degraded = false;
+  bool quiet = false;  // warnings and errors only
   bool check = false;  // see check_command.hpp
 };
+
+// Before the run: whether the files that it is to write could be written.
+Outcome<void> check_run_outputs(const RunArguments& arguments);
 
 // Drives the robot's threads until the source ends or SIGTERM or SIGINT comes. The summary goes to
 // standard output, messages to standard error. Returns the exit code: 0, or 1 when something could

@@ -15,7 +15,8 @@ constexpr std::int64_t kDumpEnd_ns = 2'000'000'000;
 
 Outcome<void> Service::open(const ServeSettings& settings, const Seqlock<LiveStatus>& status,
                             LiveMemory& memory, std::shared_ptr<const MapVersion> first,
-                            std::function<Result<std::uint64_t>(BoundedWriter& to)> dump) {
+                            std::function<Result<std::uint64_t>(BoundedWriter& to)> dump,
+                            const BuildInfo& build) {
   SharedMap& map = memory.map();
   const ServerPorts ports{
       .status = status,
@@ -29,6 +30,8 @@ Outcome<void> Service::open(const ServeSettings& settings, const Seqlock<LiveSta
       .lease_ns = first->model().limits.lease_ns,
       .resident_generation = [&map](ZoneId zone) { return map.generation(zone); },
       .dump = std::move(dump),
+      .release = build.release,
+      .commit = build.commit,
       .lines = lines};
   served_ = std::move(first);
   const MapModel& model = served_->model();

@@ -17,6 +17,12 @@
 
 namespace zonepack {
 
+// What runs, for those who ask.
+struct BuildInfo {
+  std::string release = "unknown";  // "0.1.0"
+  std::string commit = "unknown";
+};
+
 // The thread that serves other programs, and the queues between it and the control thread. It also
 // reports to the service manager's watchdog that the run is alive, as long as the control thread's
 // cycles go on.
@@ -30,7 +36,8 @@ class Service {
   // Starts to listen.
   Outcome<void> open(const ServeSettings& settings, const Seqlock<LiveStatus>& status,
                      LiveMemory& memory, std::shared_ptr<const MapVersion> map,
-                     std::function<Result<std::uint64_t>(BoundedWriter& to)> dump);
+                     std::function<Result<std::uint64_t>(BoundedWriter& to)> dump,
+                     const BuildInfo& build);
 
   // A change of map, by one thread that asks until the answer is true. Before the offer: the server
   // knows the map. After it: the server has let go of this one.

@@ -20,19 +20,29 @@ Result<std::vector<std::byte>> read_manifest_file(const std::string& folder, Byt
   auto file = read_file(folder + "/" + std::string(kManifestName), limit, mode);
   if (file || file.error().code != ErrorCode::kTooLarge) return file;
   const auto size = static_cast<ByteCount>(file.error().detail);
+  if (size > kMaxManifestFileBytes) {
+    return over_limit(LimitId::kManifestBytes, size - kManifestFrameBytes);
+  }
   return {ErrorCode::kTooLarge, static_cast<std::int64_t>(kManifestHeldTimes * size)};
 }
 
-Result<Catalog> Catalog::open(const std::string& folder, PayloadMask payload, ByteCount most) {
+Result<Catalog> Catalog::open(const std::string& folder, PayloadMask payload, ByteCount most,
+                              std::string* why) {
   const Result<std::vector<std::byte>> file = read_manifest_file(folder, most, ReadMode::kBuffered);
-  if (!file) return file.error();
-  return read(*file, folder, payload, most);
+  if (file) return read(*file, folder, payload, most, why);
+  const auto excess = excess_of(file.error());
+  if (excess && why != nullptr) *why = to_string(*excess);
+  return file.error();
 }
 
 Result<Catalog> Catalog::read(ByteSpan file, const std::string& folder, PayloadMask payload,
-                              ByteCount most) {
-  const Result<const fb::Manifest*> checked = check_manifest(file);
-  if (!checked) return checked.error();
+                              ByteCount most, std::string* why) {
+  ManifestFault fault;
+  const Result<const fb::Manifest*> checked = check_manifest(file, &fault);
+  if (!checked) {
+    if (why != nullptr) *why = manifest_fault_text(checked.error(), fault);
+    return checked.error();
+  }
   const ByteCount need = kManifestHeldTimes * file.size() + table_bytes(**checked);
   if (need > most) return {ErrorCode::kTooLarge, static_cast<std::int64_t>(need)};
   const fb::Manifest& manifest = **checked;

@@ -57,12 +57,13 @@ struct Catalog {
 
   // Reads FOLDER/manifest.zpm and checks all of it. kNotFound, kIo, and the errors of
   // check_manifest. kTooLarge with the bytes needed: reading the manifest and holding its tables
-  // would take more than `most`; nothing of that size was allocated.
+  // would take more than `most`; nothing of that size was allocated. `why` receives what is wrong
+  // with a manifest that was read or is too long for the format: entry, zone, field, value, limit.
   static Result<Catalog> open(const std::string& folder, PayloadMask payload,
-                              ByteCount most = kNoMost);
+                              ByteCount most = kNoMost, std::string* why = nullptr);
   // The same from the manifest's bytes, which must be aligned to 8; the folder may be gone.
   static Result<Catalog> read(ByteSpan manifest, const std::string& folder, PayloadMask payload,
-                              ByteCount most = kNoMost);
+                              ByteCount most = kNoMost, std::string* why = nullptr);
 
   static constexpr ByteCount kNoMost = std::numeric_limits<ByteCount>::max();
 
@@ -77,7 +78,8 @@ struct Catalog {
 };
 
 // The bytes of FOLDER/manifest.zpm. kTooLarge, with the bytes that reading it would take, when that
-// is more than `most`; nothing was read then.
+// is more than `most`, and as over_limit() has it when the file is longer than the format allows;
+// nothing was read then.
 Result<std::vector<std::byte>> read_manifest_file(const std::string& folder, ByteCount most,
                                                   ReadMode mode);
 

@@ -10,7 +10,7 @@ namespace zonepack {
 namespace {
 
 constexpr const char* kCopyAgain =
-    "; build the map again or copy the pack again, zonepack verify tells more";
+    "; build the map again or copy the pack again, zonepack verify shows what is damaged";
 
 std::string system_words(std::int64_t number) {
   return std::generic_category().message(static_cast<int>(number));
@@ -26,7 +26,7 @@ std::string what_to_do(Error error) {
     case ENFILE:
       return "; too many files are open, raise the limit (LimitNOFILE)";
     default:
-      return "; look after the disk (dmesg tells what it said), then copy the map again";
+      return "; look after the disk (dmesg shows what it said), then copy the map again";
   }
 }
 
@@ -40,6 +40,7 @@ std::string what_was_found(Error error) {
     case ErrorCode::kTruncated:
       return "truncated: the file ends at byte " + detail;
     case ErrorCode::kTooLarge:
+      if (const auto excess = excess_of(error)) return to_string(*excess);
       return "its index takes " + detail +
              " bytes, more than the chunks that the manifest counts in it";
     case ErrorCode::kMismatch:
@@ -47,6 +48,10 @@ std::string what_was_found(Error error) {
         return "mismatch: it has other signatures, slots or chunks than the manifest says";
       }
       return "mismatch: it is not the pack that the manifest names";
+    case ErrorCode::kBadChecksum:
+    case ErrorCode::kBadCompression:
+    case ErrorCode::kBadStructure:
+      return std::string(to_string(error.code)) + " at byte " + detail;
     default:
       return std::string(to_string(error.code)) + " (" + detail + ")";
   }

@@ -18,8 +18,7 @@ bool record_is_sound(const fb::Record& record, std::span<const fb::Column> colum
                      const fb::ChunkEntry& entry) noexcept {
   return record.signature() >= entry.first_signature() &&
          record.signature() <= entry.last_signature() && record.part() <= fb::Part::MAX &&
-         kind_of(record.part()) == entry.kind() && record.total_rows() <= kMaxRowsPerTable &&
-         record.first_row() <= record.total_rows() &&
+         kind_of(record.part()) == entry.kind() && record.first_row() <= record.total_rows() &&
          record.rows() <= record.total_rows() - record.first_row() &&
          record.first_column() <= columns.size() &&
          record.columns() <= columns.size() - record.first_column() &&
@@ -85,6 +84,9 @@ Result<void> check_bulk_chunk(ByteSpan bytes, const fb::ChunkEntry& entry) noexc
   const std::span<const fb::Column> columns{
       reinterpret_cast<const fb::Column*>(chunk.columns()->Data()), chunk.columns()->size()};
   for (const fb::Record* record : *chunk.records()) {
+    if (is_over(LimitId::kRowsOfTable, record->total_rows())) {
+      return over_limit(LimitId::kRowsOfTable, record->total_rows());
+    }
     if (!record_is_sound(*record, columns, own, entry)) return ErrorCode::kBadStructure;
   }
   return {};

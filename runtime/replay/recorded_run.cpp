@@ -23,10 +23,11 @@ Outcome<Catalog> catalog_of(const RecordingReader& recording, const Settings& se
   if (recorded == nullptr) {
     return failure(which + "is not in the recording", ErrorCode::kNotFound);
   }
-  auto catalog = Catalog::read(recorded->manifest, recorded->folder, settings.memory.payload.mask);
+  std::string why;
+  auto catalog = Catalog::read(recorded->manifest, recorded->folder, settings.memory.payload.mask,
+                               Catalog::kNoMost, &why);
   if (!catalog) {
-    return failure(which + "cannot be used: " + to_string(catalog.error().code),
-                   catalog.error().code);
+    return failure(which + "cannot be used: " + why, catalog.error().code);
   }
   return std::move(catalog).value();
 }
@@ -233,13 +234,12 @@ Outcome<RecordedRun> open_recorded_run(const RecordingPreface& preface) {
     for (const std::string& fault : loaded.faults) all += "\n  " + fault;
     return failure(std::move(all));
   }
+  std::string why;
   Result<Catalog> catalog =
-      Catalog::read(preface.manifest, preface.map_folder, loaded.settings.memory.payload.mask);
+      Catalog::read(preface.manifest, preface.map_folder, loaded.settings.memory.payload.mask,
+                    Catalog::kNoMost, &why);
   if (!catalog) {
-    return failure(
-        "the recorded map cannot be used: " + std::string(to_string(catalog.error().code)) + " (" +
-            std::to_string(catalog.error().detail) + ")",
-        catalog.error().code);
+    return failure("the recorded map cannot be used: " + why, catalog.error().code);
   }
   return RecordedRun{std::move(loaded.settings), std::move(catalog).value()};
 }

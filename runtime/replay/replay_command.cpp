@@ -16,6 +16,7 @@
 #include "runtime/run/log_faults.hpp"
 #include "runtime/run/log_match.hpp"
 #include "runtime/run/log_time.hpp"
+#include "runtime/run/output_check.hpp"
 #include "runtime/run/run_report.hpp"
 #include "runtime/run/summary_text.hpp"
 
@@ -43,7 +44,7 @@ Outcome<void> write_results(const ReplayArguments& arguments, const Catalog& cat
                             const std::vector<BaselineRow>& baseline, const ReplayResult& result) {
   Failures failed;
   failed.add(result.events_written);
-  failed.add(write_summary(result.summary, arguments.json));
+  failed.add(write_summary(result.summary, arguments.json, arguments.events == "-"));
   const std::string& source = arguments.can.empty() ? arguments.recording : arguments.can;
   const RunReportInput run{catalog.folder, source, result.summary, result.trace, baseline};
   if (!arguments.picture.empty()) {
@@ -162,8 +163,13 @@ Outcome<void> replay_log(const ReplayArguments& arguments) {
 }  // namespace
 
 int run_replay(const ReplayArguments& arguments) {
-  const auto done =
-      arguments.recording.empty() ? replay_log(arguments) : replay_from_recording(arguments);
+  auto done = check_outputs({{"--events", arguments.events, true},
+                             {"--json", arguments.json, true},
+                             {"--report", arguments.report},
+                             {"--picture", arguments.picture}});
+  if (done) {
+    done = arguments.recording.empty() ? replay_log(arguments) : replay_from_recording(arguments);
+  }
   return done ? 0 : report_failure(kProgram, done.error());
 }
 

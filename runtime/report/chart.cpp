@@ -11,7 +11,9 @@
 namespace zonepack::report {
 namespace {
 
-constexpr double kLeft = 72, kRight = 84, kTitle = 24, kBand = 18, kAxisBelow = 38;
+constexpr double kTitle = 24, kBand = 18, kAxisBelow = 38;
+constexpr double kRoomy_px = 500;  // a chart this wide has wide margins
+constexpr double kTimeTick_px = 70;
 constexpr int kTicks = 6;
 constexpr double kSmall = 11, kTiny = 8, kEndLabel = 15;
 
@@ -29,10 +31,26 @@ std::vector<LegendItem> legend_of(const Chart& chart) {
   return items;
 }
 
+// Of spans that begin within half a pixel after the one before ends, none is seen: one of them is
+// drawn, so that a page stays small however often a flag changed.
+class Crowd {
+ public:
+  bool hides(double from, double to) noexcept {
+    if (to < last_ + 0.5) return true;
+    last_ = std::max(to, from + 0.5);
+    return false;
+  }
+
+ private:
+  double last_ = -1;
+};
+
 void draw_shades(Svg& svg, const Chart& chart, const ChartScale& scale) {
   for (auto shade = chart.shades.rbegin(); shade != chart.shades.rend(); ++shade) {
+    Crowd crowd;
     for (const TimeSpan& span : shade->spans) {
       const double from = scale.x(span.from_s);
+      if (crowd.hides(from, std::max(scale.x(span.to_s), from + 1))) continue;
       svg.rect({from, scale.top}, std::max(scale.x(span.to_s) - from, 1.0), scale.height,
                {.fill = mix(kWhite, shade->color, 0.3), .hint = shade->name});
     }
@@ -48,14 +66,16 @@ void draw_grid(Svg& svg, const Chart& chart, const ChartScale& scale) {
     svg.text({scale.left - 8, y + 4}, label,
              {.size = kSmall, .color = kQuiet, .anchor = Anchor::kEnd});
   }
+  Crowd crowd;
   for (std::size_t i = 1; i < chart.timeline.size(); ++i) {
     const double x = scale.x(chart.timeline[i].span.from_s);
+    if (crowd.hides(x, x)) continue;
     svg.line({x, scale.top}, {x, scale.bottom()}, {.stroke = kFaint});
   }
 }
 
 void draw_time_axis(Svg& svg, const ChartScale& scale, double y) {
-  const Ticks times = make_ticks(0, scale.duration_s, 10);
+  const Ticks times = make_ticks(0, scale.duration_s, static_cast<int>(scale.width / kTimeTick_px));
   for (std::size_t i = 0; i < times.values.size(); ++i) {
     const double x = scale.x(times.values[i]);
     svg.line({x, y}, {x, y + 4}, {.stroke = kWall});
@@ -69,9 +89,11 @@ void draw_time_axis(Svg& svg, const ChartScale& scale, double y) {
 void draw_timeline(Svg& svg, const Chart& chart, const ChartScale& scale) {
   svg.text({scale.left - 8, scale.bottom() + 4 + kBand - 5}, "zone",
            {.size = kSmall, .color = kQuiet, .anchor = Anchor::kEnd});
+  Crowd crowd;
   for (const TimelineBlock& block : chart.timeline) {
     const double from = scale.x(block.span.from_s);
     const double width = scale.x(block.span.to_s) - from;
+    if (crowd.hides(from, from + width)) continue;
     const std::string hint = block.name + ": " + format_number(block.span.from_s, 1) + " to " +
                              format_number(block.span.to_s, 1) + " s";
     svg.rect({from, scale.bottom() + 4}, std::max(width, 0.5), kBand,
@@ -80,7 +102,11 @@ void draw_timeline(Svg& svg, const Chart& chart, const ChartScale& scale) {
     const double size = em * kSmall + 4 <= width ? kSmall : kTiny;
     if (em * size + 2 > width) continue;
     svg.text({from + width / 2, scale.bottom() + 4 + kBand / 2 + size * 0.37}, block.name,
-             {.size = size, .color = ink_on(block.color), .bold = true, .anchor = Anchor::kMiddle});
+             {.size = size,
+              .color = ink_on(block.color),
+              .bold = true,
+              .anchor = Anchor::kMiddle,
+              .on_color = true});
   }
 }
 
@@ -138,11 +164,17 @@ std::string end_value(const Chart& chart, double value) {
   return format_number(value, chart.unit.empty() ? 0 : 2) + chart.unit;
 }
 
+Chart narrowed(Chart chart) {
+  chart.width_px = kNarrowWidth_px;
+  return chart;
+}
+
 Svg draw_chart(const Chart& chart) {
   const std::vector<LegendItem> legend = legend_of(chart);
   ChartScale scale;
-  scale.left = kLeft;
-  scale.width = chart.width_px - kLeft - kRight;
+  const bool roomy = chart.width_px >= kRoomy_px;
+  scale.left = roomy ? 72 : 60;
+  scale.width = chart.width_px - scale.left - (roomy ? 84 : 66);
   scale.top = (chart.title.empty() ? 0 : kTitle) + legend_height(scale.width, legend) + 10;
   scale.height = chart.plot_height_px;
   scale.duration_s = last_time_s(chart);
@@ -150,8 +182,8 @@ Svg draw_chart(const Chart& chart) {
   const double band = chart.timeline.empty() ? 0 : kBand + 6;
 
   Svg svg(chart.width_px, scale.bottom() + band + kAxisBelow);
-  svg.text({kLeft, 14}, chart.title, {.size = 14, .bold = true});
-  draw_legend(svg, {kLeft, chart.title.empty() ? 0 : kTitle}, scale.width, legend);
+  svg.text({scale.left, 14}, chart.title, {.size = 14, .bold = true});
+  draw_legend(svg, {scale.left, chart.title.empty() ? 0 : kTitle}, scale.width, legend);
   draw_shades(svg, chart, scale);
   draw_grid(svg, chart, scale);
   draw_limit(svg, chart, scale);
@@ -159,6 +191,12 @@ Svg draw_chart(const Chart& chart) {
   if (!chart.timeline.empty()) draw_timeline(svg, chart, scale);
   draw_time_axis(svg, scale, scale.bottom() + band);
   draw_end_values(svg, chart, scale);
+  std::string plot;
+  for (const double value :
+       {scale.left, scale.top, scale.width, scale.height, scale.duration_s, scale.most}) {
+    plot += (plot.empty() ? "" : " ") + format_number(value, 3);
+  }
+  svg.set_data("plot", plot);
   return svg;
 }
 

@@ -62,6 +62,16 @@ struct Chart {
 
 Svg draw_chart(const Chart& chart);
 
+// The same chart for a page as narrow as a phone's.
+inline constexpr double kNarrowWidth_px = 340;
+Chart narrowed(Chart chart);
+
+// What the page's script needs to name values at a moment: every series as whole numbers, each but
+// the first as its difference from the one before; times in ms. Of a long series no more than
+// kMostSeriesPoints: steps keep their peaks, lines their corners.
+inline constexpr std::size_t kMostSeriesPoints = 20'000;
+std::string chart_json(const Chart& chart);
+
 // The value at the end of each series, as printed next to it.
 std::string end_value(const Chart& chart, double value);
 

@@ -4,12 +4,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <tuple>
 
 namespace zonepack::report {
 
 struct Color {
   std::uint8_t r = 0, g = 0, b = 0;
   friend bool operator==(const Color&, const Color&) = default;
+  friend bool operator<(const Color& a, const Color& b) noexcept {
+    return std::tie(a.r, a.g, a.b) < std::tie(b.r, b.g, b.b);
+  }
 };
 
 // "#rrggbb".
@@ -17,6 +21,11 @@ std::string to_hex(Color color);
 
 // weight 0: a; 1: b.
 Color mix(Color a, Color b, double weight) noexcept;
+
+// The same colour for a dark page: lightness turned around, hue kept; pale grounds become dark
+// ones, ink becomes light. The colours of lines and blocks below that stand out on both stay as
+// they are, and all that fill a block come out light enough for dark text.
+Color dark_twin(Color color) noexcept;
 
 // Black or white, whichever reads better on `background`.
 Color ink_on(Color background) noexcept;

@@ -7,10 +7,13 @@
 #include <span>
 #include <utility>
 
+#include "runtime/report/chart.hpp"
+#include "runtime/report/floor_plan_marks.hpp"
 #include "runtime/report/format.hpp"
 #include "runtime/report/legend.hpp"
 #include "runtime/report/plan_label.hpp"
 #include "runtime/report/plan_view.hpp"
+#include "runtime/report/script_json.hpp"
 #include "runtime/report/ticks.hpp"
 
 namespace zonepack::report {
@@ -18,7 +21,9 @@ namespace {
 
 constexpr double kPlanLeft = 40, kPlanRight = 14, kPlanAxisBelow = 40, kMostHeight = 760;
 constexpr double kMargin_m = 0.4;
-constexpr double kArrowEvery = 110;  // pixels of route
+constexpr double kRasterShown_m = 2;          // how far a grid beyond zones and signatures is shown
+constexpr double kArrowEvery = 110;           // pixels of route
+constexpr Color kZoneLine{0x3a, 0x5f, 0x8a};  // not to be taken for a wall
 constexpr Style kRouteHalo{.stroke = kWhite, .stroke_width = 5.5, .opacity = 0.8, .round = true};
 
 bool is_finite(Point2 p) noexcept { return std::isfinite(p.x_m) && std::isfinite(p.y_m); }
@@ -35,10 +40,27 @@ Box2 area_of(const FloorPlan& plan) noexcept {
   };
   for (const PlanZone& zone : plan.zones) std::ranges::for_each(zone.polygon.outer, add);
   std::ranges::for_each(plan.signatures, add);
+  for (const PlanOrphan& orphan : plan.orphans) add(orphan.p_map);
+  for (const PlanFault& fault : plan.faults) {
+    for (const Ring& ring : fault.areas) std::ranges::for_each(ring, add);
+    for (const Segment2& line : fault.lines) {
+      add(line.p);
+      add(line.q);
+    }
+  }
   if (!(box.min.x_m <= box.max.x_m)) {
     for (const PlanRoutePoint& point : plan.route) add(point.p_map);
   }
+  if (!(box.min.x_m <= box.max.x_m) && plan.raster) box = plan.raster->area;
   if (!(box.min.x_m <= box.max.x_m)) return {{0, 0}, {10, 5}};
+  if (plan.raster) {
+    // A laser sees far out of windows; only what is near counts.
+    const Box2& grid = plan.raster->area;
+    box.min.x_m = std::min(box.min.x_m, std::max(grid.min.x_m, box.min.x_m - kRasterShown_m));
+    box.min.y_m = std::min(box.min.y_m, std::max(grid.min.y_m, box.min.y_m - kRasterShown_m));
+    box.max.x_m = std::max(box.max.x_m, std::min(grid.max.x_m, box.max.x_m + kRasterShown_m));
+    box.max.y_m = std::max(box.max.y_m, std::min(grid.max.y_m, box.max.y_m + kRasterShown_m));
+  }
   return {{box.min.x_m - kMargin_m, box.min.y_m - kMargin_m},
           {box.max.x_m + kMargin_m, box.max.y_m + kMargin_m}};
 }
@@ -52,6 +74,7 @@ std::vector<LegendItem> legend_of(const FloorPlan& plan) {
   if (!plan.true_route.empty()) items.push_back({Mark::kDashedLine, kInk, "true route"});
   if (!plan.portals.empty()) items.push_back({Mark::kThickLine, kDoor, "portal"});
   if (!plan.signatures.empty()) items.push_back({Mark::kDot, kQuiet, "signature"});
+  add_mark_legend(plan, items);
   return items;
 }
 
@@ -85,11 +108,8 @@ void draw_axes(Svg& svg, const PlanView& view) {
   });
   svg.rect(view.corner(), view.width(), view.height(), {.stroke = kFaint});
 
-  const double right = view.corner().x + view.width();
-  svg.text({right, bottom + 32},
-           view.turned() ? "right: y, down: x, in metres" : "right: x, up: y, in metres",
-           {.size = 11, .color = kQuiet, .anchor = Anchor::kEnd});
-  const Ticks lengths = make_ticks(0, 140 / view.px_per_m(), 1);
+  const double most_px = std::min(140.0, view.width() / 5);  // the words to the right need room
+  const Ticks lengths = make_ticks(0, most_px / view.px_per_m(), 1);
   const double bar_m = lengths.values.back() > 0 ? lengths.values.back() : lengths.step;
   const Px bar{view.corner().x, bottom + 28};
   const double bar_px = bar_m * view.px_per_m();
@@ -97,7 +117,15 @@ void draw_axes(Svg& svg, const PlanView& view) {
   svg.line({bar.x, bar.y - 4}, {bar.x, bar.y + 4}, {.stroke = kInk, .stroke_width = 2});
   svg.line({bar.x + bar_px, bar.y - 4}, {bar.x + bar_px, bar.y + 4},
            {.stroke = kInk, .stroke_width = 2});
-  svg.text({bar.x + bar_px + 8, bar.y + 4}, format_number(bar_m, 2) + " m", {.size = 11});
+  const std::string length = format_number(bar_m, 2) + " m";
+  svg.text({bar.x + bar_px + 8, bar.y + 4}, length, {.size = 11});
+
+  std::string axes = view.turned() ? "right: y, down: x, in metres" : "right: x, up: y, in metres";
+  const double room = view.width() - bar_px - 24 - text_width_em(length) * 11;
+  if (text_width_em(axes) * 11 > room)
+    axes = view.turned() ? "right: y, down: x" : "right: x, up: y";
+  svg.text({view.corner().x + view.width(), bottom + 32}, axes,
+           {.size = 11, .color = kQuiet, .anchor = Anchor::kEnd});
 }
 
 struct RoutePiece {
@@ -154,7 +182,9 @@ void draw_routes(Svg& svg, const FloorPlan& plan, const PlanView& view) {
   }
   std::vector<Px> truth;
   for (const Point2& p : plan.true_route) {
-    if (is_finite(p)) truth.push_back(view(p));
+    if (is_finite(p) && (truth.empty() || distance_px(truth.back(), view(p)) > 0.7)) {
+      truth.push_back(view(p));
+    }
   }
   svg.polyline(truth, {.stroke = kInk, .stroke_width = 0.9, .opacity = 0.8, .dash = "4 3"});
   draw_arrows(svg, pieces);
@@ -224,6 +254,16 @@ void draw_labels(Svg& svg, const FloorPlan& plan, const PlanView& view) {
   }
 }
 
+std::string transform_of(const PlanView& view) {
+  const Px origin = view(Point2{0, 0}), x = view(Point2{1, 0}), y = view(Point2{0, 1});
+  std::string text;
+  for (const double value :
+       {x.x - origin.x, x.y - origin.y, y.x - origin.x, y.y - origin.y, origin.x, origin.y}) {
+    text += (text.empty() ? "" : " ") + format_number(value, 4);
+  }
+  return text;
+}
+
 }  // namespace
 
 Svg draw_floor_plan(const FloorPlan& plan) {
@@ -236,9 +276,18 @@ Svg draw_floor_plan(const FloorPlan& plan) {
   draw_legend(svg, {kPlanLeft, 0}, plot_width, legend);
   draw_axes(svg, view);
   svg.open_clip(view.corner(), view.width(), view.height());
-  for (const PlanZone& zone : plan.zones) {
-    svg.polygon(view(zone.polygon),
-                {.fill = zone.fill, .stroke = kWall, .stroke_width = 1.25, .hint = zone.hint});
+  for (std::size_t i = 0; i < plan.zones.size(); ++i) {
+    const PlanZone& zone = plan.zones[i];
+    svg.polygon(
+        view(zone.polygon),
+        {.fill = zone.fill, .stroke = kWall, .stroke_width = 1.25, .hint = zone.hint, .zone = i});
+  }
+  if (plan.raster) {
+    draw_raster(svg, plan, view);
+    for (const PlanZone& zone : plan.zones) {
+      svg.polygon(view(zone.polygon),
+                  {.stroke = kZoneLine, .stroke_width = 1.25, .hint = zone.hint});
+    }
   }
   const double radius = plan.signatures.size() > 400 ? 1.2 : 1.9;
   for (const Point2& p : plan.signatures) {
@@ -250,7 +299,22 @@ Svg draw_floor_plan(const FloorPlan& plan) {
   draw_routes(svg, plan, view);
   svg.close();
   draw_labels(svg, plan, view);
+  svg.open_clip(view.corner(), view.width(), view.height());
+  draw_marks(svg, plan, view);
+  svg.close();
+  svg.set_data("plan", transform_of(view));
   return svg;
+}
+
+FloorPlan narrowed(FloorPlan plan) {
+  plan.width_px = kNarrowWidth_px;
+  return plan;
+}
+
+std::string plan_json(const FloorPlan& plan) {
+  std::vector<std::string> names;
+  for (const PlanZone& zone : plan.zones) names.push_back(zone.name);
+  return "{\"kind\":\"plan\",\"zones\":" + script_strings(names) + "}";
 }
 
 }  // namespace zonepack::report

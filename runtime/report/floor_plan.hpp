@@ -21,6 +21,29 @@ struct PlanZone {
   Color fill = kWhite;
 };
 
+// A picture of what is free and what is occupied, with everything else transparent: drawn over the
+// fill of the zones and under all lines.
+struct PlanRaster {
+  std::string png;  // the file; its top row is at area.max.y_m
+  Box2 area;        // outer edges of the picture, metres
+};
+
+// Something wrong with the drawing of the zones, shown in red where it is. Faults with a place of
+// their own are numbered.
+struct PlanFault {
+  std::string number;  // "3", as in a list below the plan; may be empty
+  std::string hint;
+  std::vector<Ring> areas;  // overlapping or faulty outlines
+  std::vector<Segment2> lines;
+  std::vector<Point2> points;
+};
+
+// A signature in no zone.
+struct PlanOrphan {
+  Point2 p_map;
+  std::string hint;
+};
+
 struct PlanRoutePoint {
   Point2 p_map;
   Color color;
@@ -35,6 +58,9 @@ struct FloorPlan {
   std::vector<PlanZone> zones;
   std::vector<Segment2> portals;
   std::vector<Point2> signatures;
+  std::optional<PlanRaster> raster;
+  std::vector<PlanFault> faults;
+  std::vector<PlanOrphan> orphans;
   std::vector<PlanRoutePoint> route;  // as estimated, in order
   std::vector<Point2> true_route;     // empty when unknown
   std::optional<PlanRamp> ramp;
@@ -42,6 +68,14 @@ struct FloorPlan {
 };
 
 // Skips zones without a finite vertex and points that are not finite.
+// The drawing says where the map lies on it, for a page's script: data-plan="a b c d e f" turns
+// (x, y) of the map into (a x + c y + e, b x + d y + f) on the page.
 Svg draw_floor_plan(const FloorPlan& plan);
+
+// The same plan for a page as narrow as a phone's.
+FloorPlan narrowed(FloorPlan plan);
+
+// What the page's script needs to name zones.
+std::string plan_json(const FloorPlan& plan);
 
 }  // namespace zonepack::report

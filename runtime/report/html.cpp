@@ -1,35 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <set>
+
 #include "runtime/report/format.hpp"
+#include "runtime/report/page_texts.hpp"
 #include "runtime/report/report.hpp"
 
 namespace zonepack::report {
 namespace {
 
-constexpr std::string_view kStyle = R"(
-:root { color-scheme: light; }
-body { font: 16px/1.5 "DejaVu Sans", Verdana, sans-serif; color: #1f242b; background: #fff;
-       max-width: 940px; margin: 0 auto; padding: 24px 20px 48px; }
-h1 { font-size: 1.5rem; line-height: 1.25; margin: 0 0 .5rem; overflow-wrap: anywhere; }
-h2 { font-size: 1.1rem; margin: 2.25rem 0 .25rem; }
-p.headline { font-size: 1.1rem; margin: 0 0 1.25rem; }
-p.caption, footer { color: #5c6570; font-size: .85rem; margin: 0 0 .75rem; }
-dl { display: grid; grid-template-columns: repeat(auto-fill, minmax(165px, 1fr)); gap: 0 16px; margin: 0; }
-dl div { border-top: 1px solid #e3e6ea; padding: .4rem 0 .6rem; }
-dt { font-size: .8rem; color: #5c6570; }
-dd { margin: 0; font-size: 1.15rem; font-weight: bold; }
-dd small { display: block; font-size: .75rem; font-weight: normal; color: #5c6570; }
-.bad dd { color: #c42b1c; }
-figure { margin: 0; }
-figure div, .table { overflow-x: auto; }
-svg { display: block; width: 100%; min-width: 620px; height: auto; }
-table { border-collapse: collapse; font-size: .85rem; width: 100%; }
-th, td { padding: .25rem .7rem; text-align: left; border-bottom: 1px solid #e3e6ea; }
-th { border-bottom: 2px solid #8a939e; vertical-align: bottom; }
-.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-footer { margin-top: 2.5rem; border-top: 1px solid #e3e6ea; padding-top: .75rem; overflow-wrap: anywhere; }
-@media print { body { max-width: none; padding: 0; font-size: 11pt; }
-               figure, tr, dl div { break-inside: avoid; } h2 { break-after: avoid; } }
-)";
+// Nothing from outside, whatever the names in the page hold.
+constexpr std::string_view kPolicy =
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
 std::string element(std::string_view name, std::string_view text, std::string_view css = {}) {
   if (text.empty()) return {};
@@ -37,6 +18,29 @@ std::string element(std::string_view name, std::string_view text, std::string_vi
   html.append(name);
   if (!css.empty()) html.append(" class=\"").append(css).append("\"");
   return html.append(">").append(escape_xml(text)).append("</").append(name).append(">\n");
+}
+
+// Colours of the drawings as variables of the page, and their twins where the page is dark: on a
+// screen only, since paper is white.
+std::string color_rules(const Report& report) {
+  std::set<Color> colors;
+  for (const Figure& figure : report.figures) {
+    for (const Svg* drawing : {&figure.drawing, figure.narrow ? &*figure.narrow : nullptr}) {
+      if (drawing != nullptr) colors.insert(drawing->colors().begin(), drawing->colors().end());
+    }
+  }
+  std::string light, dark, use;
+  for (const Color color : colors) {
+    const std::string hex = to_hex(color), variable = "--c" + hex.substr(1);
+    light += variable + ":" + hex + ";";
+    dark += variable + ":" + to_hex(dark_twin(color)) + ";";
+    use += "svg [fill=\"" + hex + "\"]:not(.on){fill:var(" + variable + ")}svg [stroke=\"" + hex +
+           "\"]{stroke:var(" + variable + ")}\n";
+  }
+  if (colors.empty()) return {};
+  return ":root{" + light +
+         "}\n@media screen and (prefers-color-scheme: dark){:root:not([data-theme=\"light\"]){" +
+         dark + "}}\n@media screen{:root[data-theme=\"dark\"]{" + dark + "}}\n" + use;
 }
 
 std::string facts_html(const std::vector<Fact>& facts) {
@@ -49,6 +53,20 @@ std::string facts_html(const std::vector<Fact>& facts) {
     html += "</dd></div>\n";
   }
   return html + "</dl>\n";
+}
+
+std::string drawing_html(const Figure& figure, const Svg& drawing, std::string_view css) {
+  std::string html = "<div class=\"drawing ";
+  html.append(css).append("\" role=\"img\" aria-label=\"").append(escape_xml(figure.title));
+  return html.append("\">\n").append(drawing.inline_text()).append("</div>\n");
+}
+
+std::string figure_html(const Figure& figure) {
+  std::string html =
+      "<figure>\n" + element("h2", figure.title) + element("p", figure.caption, "caption");
+  if (!figure.narrow) return html + drawing_html(figure, figure.drawing, "any") + "</figure>\n";
+  return html + drawing_html(figure, figure.drawing, "wide") +
+         drawing_html(figure, *figure.narrow, "narrow") + "</figure>\n";
 }
 
 std::string table_html(const Table& table) {
@@ -70,22 +88,37 @@ std::string table_html(const Table& table) {
   return html + "</tbody></table></div>\n";
 }
 
+// One entry a figure, null where the script has nothing to do.
+std::string data_json(const Report& report) {
+  std::string json = "{\"figures\":[";
+  for (std::size_t i = 0; i < report.figures.size(); ++i) {
+    const std::string& data = report.figures[i].data;
+    if (i > 0) json += ',';
+    json += data.empty() ? "null" : data;
+  }
+  return json + "],\"playback\":" + (report.playback ? playback_json(*report.playback) : "null") +
+         "}";
+}
+
 }  // namespace
 
 std::string to_html(const Report& report) {
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>" +
-      escape_xml(report.title) + "</title>\n<style>";
-  html.append(kStyle).append("</style>\n</head>\n<body>\n");
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
+      "<meta name=\"color-scheme\" content=\"light dark\"/>\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"";
+  html.append(kPolicy).append("\"/>\n<title>").append(escape_xml(report.title));
+  html.append("</title>\n<style>\n").append(color_rules(report)).append(kPageStyle);
+  html.append("</style>\n</head>\n<body>\n<main>\n");
   html += element("h1", report.title) + element("p", report.headline, "headline");
   html += facts_html(report.facts);
-  for (const Figure& figure : report.figures) {
-    html += "<figure>\n" + element("h2", figure.title) + element("p", figure.caption, "caption") +
-            "<div>\n" + figure.drawing.inline_text() + "</div>\n</figure>\n";
-  }
+  for (const Figure& figure : report.figures) html += figure_html(figure);
   for (const Table& table : report.tables) html += table_html(table);
-  return html + element("footer", report.origin) + "</body>\n</html>\n";
+  html +=
+      element("footer", report.origin) + "</main>\n<script type=\"application/json\" id=\"data\">";
+  html.append(data_json(report)).append("</script>\n<script>\n").append(kPageScript);
+  return html + "</script>\n</body>\n</html>\n";
 }
 
 }  // namespace zonepack::report

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "platform/base/natural_order.hpp"
 #include "runtime/report/floor_plan.hpp"
 #include "runtime/report/format.hpp"
 
@@ -10,6 +11,11 @@ namespace zonepack::report {
 namespace {
 
 std::string bytes_text(ByteCount bytes) { return format_bytes(static_cast<double>(bytes)); }
+
+// For columns, of which all cells have one unit.
+std::string mib_text(ByteCount bytes) {
+  return format_fixed(static_cast<double>(bytes) / static_cast<double>(kMiB), 2);
+}
 
 template <typename Member>
 ByteCount sum_of(const PackReport& map, Member member) {
@@ -47,6 +53,7 @@ FloorPlan plan_of(const PackReport& map) {
                            zone.signature_positions.end());
   }
   plan.portals = map.portals;
+  plan.raster = map.ground;
   plan.ramp = PlanRamp{"0", bytes_text(most) + " charged"};
   return plan;
 }
@@ -61,20 +68,21 @@ Table table_of(const PackReport& map) {
                {"m\xC2\xB2", true},
                {"Signatures", true},
                {"Features", true},
-               {"Charged", true},
-               {"Stored", true},
+               {"Charged MiB", true},
+               {"Stored MiB", true},
                {"Charged / signature", true}},
               {}};
   for (const PackedZone& zone : map.zones) {
     const double each = zone.signatures == 0 ? 0
                                              : static_cast<double>(zone.charged_bytes) /
                                                    static_cast<double>(zone.signatures);
-    table.rows.push_back({zone.name, zone.zone_type, zone.label,
-                          format_fixed(area_m2(zone.polygon), 1), format_count(zone.signatures),
-                          format_count(zone.features), format_count(zone.charged_bytes),
-                          format_count(zone.stored_bytes),
-                          zone.signatures == 0 ? "" : format_bytes(each)});
+    table.rows.push_back(
+        {zone.name, zone.zone_type, zone.label, format_fixed(area_m2(zone.polygon), 1),
+         format_count(zone.signatures), format_count(zone.features), mib_text(zone.charged_bytes),
+         mib_text(zone.stored_bytes), zone.signatures == 0 ? "" : format_bytes(each)});
   }
+  std::ranges::stable_sort(
+      table.rows, [](const auto& a, const auto& b) { return natural_less(a.front(), b.front()); });
   return table;
 }
 
@@ -103,12 +111,17 @@ Report make_pack_report(const PackReport& map) {
       {"zones", format_count(map.zones.size()), format_count(map.portals.size()) + " portals"},
       {"payload", map.payload, "what is loaded of each signature"},
   };
+  const FloorPlan plan = plan_of(map);
   page.figures.push_back(
       {"Floor plan",
-       "The darker a zone, the more bytes it takes while it is in memory. Dots are signatures, "
-       "where "
-       "the camera stood; orange bars are portals, where the robot goes from zone to zone.",
-       draw_floor_plan(plan_of(map))});
+       "The stronger the colour of a zone, the more bytes it takes while it is in memory. Dots are "
+       "signatures, where the camera stood; orange bars are portals, where the robot goes from "
+       "zone "
+       "to zone." +
+           std::string(map.ground ? " Black is what the mapping robot saw as occupied, grey what "
+                                    "it did not see."
+                                  : ""),
+       draw_floor_plan(plan), draw_floor_plan(narrowed(plan)), plan_json(plan)});
   page.tables.push_back(table_of(map));
   page.origin = map.source + (map.source.empty() ? "" : " ") + "Version " + map.version + ".";
   return page;

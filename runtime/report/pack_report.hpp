@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
 #include "runtime/pack_format/file/geometry.hpp"
+#include "runtime/report/floor_plan.hpp"
 #include "runtime/report/report.hpp"
 
 // What a packed map holds, for drawing; the reader of the manifest fills it in.
@@ -29,7 +31,8 @@ struct PackReport {
   std::string source;   // its source and the program that packed it
   std::vector<PackedZone> zones;
   std::vector<Segment2> portals;
-  ByteCount table_bytes = 0;  // tables and read buffers, with every zone loaded
+  std::optional<PlanRaster> ground;  // the occupancy grid, when it is known
+  ByteCount table_bytes = 0;         // tables and read buffers, with every zone loaded
   ByteCount smallest_budget_bytes = 0;
   std::string smallest_budget_pair;  // "C3 with H1"
 };

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "platform/base/failure.hpp"
+#include "runtime/report/playback.hpp"
 #include "runtime/report/svg.hpp"
 
 // A report: a result in one sentence, in numbers, in figures and in tables; as a page or as a
@@ -21,6 +23,8 @@ struct Figure {
   std::string title;
   std::string caption;  // how to read it
   Svg drawing;
+  std::optional<Svg> narrow = {};  // the same for a page as narrow as a phone's
+  std::string data = {};           // chart_json() or plan_json(), for the page's script
 };
 
 struct TableColumn {
@@ -42,9 +46,12 @@ struct Report {
   std::vector<Fact> facts;
   std::vector<Figure> figures;
   std::vector<Table> tables;
+  std::optional<Playback> playback = {};  // on the first figure
 };
 
-// A page that needs nothing else: no script, no outside resource; prints well.
+// A page that needs nothing else, prints well, fits a phone and follows the reader's choice of a
+// light or dark page. It shows everything without its script (report.js), which adds values under
+// the cursor, playing the run, the list of events and tables in another order.
 std::string to_html(const Report& report);
 
 // Everything on one sheet, top to bottom.

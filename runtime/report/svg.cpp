@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "platform/base/base64.hpp"
 #include "platform/base/require.hpp"
 #include "runtime/report/format.hpp"
 
@@ -47,6 +48,8 @@ std::string hint_text(std::string_view hint) {
 void Svg::shape(std::string_view name, std::string_view attributes, const Style& style) {
   body_.append("<").append(name).append(attributes);
   body_ += attribute("fill", style.fill ? to_hex(*style.fill) : "none");
+  if (style.fill) colors_.insert(*style.fill);
+  if (style.stroke) colors_.insert(*style.stroke);
   if (style.stroke) {
     body_ += attribute("stroke", to_hex(*style.stroke));
     if (style.stroke_width != 1) body_ += attribute("stroke-width", style.stroke_width);
@@ -56,6 +59,7 @@ void Svg::shape(std::string_view name, std::string_view attributes, const Style&
     }
   }
   if (style.opacity < 1) body_ += attribute("opacity", style.opacity);
+  if (style.zone) body_ += attribute("data-zone", std::to_string(*style.zone));
   if (style.hint.empty()) {
     body_ += "/>\n";
   } else {
@@ -104,6 +108,12 @@ void Svg::text(Px baseline, std::string_view text, const TextStyle& style) {
   body_ += "<text";
   body_ += attribute("x", baseline.x) + attribute("y", baseline.y) +
            attribute("font-size", style.size) + attribute("fill", to_hex(style.color));
+  if (style.on_color) {
+    body_ += attribute("class", "on");
+  } else {
+    colors_.insert(style.color);
+  }
+  if (style.halo) colors_.insert(*style.halo);
   if (style.bold) body_ += attribute("font-weight", "bold");
   if (style.anchor != Anchor::kStart) {
     body_ += attribute("text-anchor", style.anchor == Anchor::kMiddle ? "middle" : "end");
@@ -114,6 +124,25 @@ void Svg::text(Px baseline, std::string_view text, const TextStyle& style) {
   }
   if (style.opacity < 1) body_ += attribute("opacity", style.opacity);
   body_.append(">").append(escape_xml(text)).append("</text>\n");
+}
+
+void Svg::image(Px corner, double width, double height, bool turned, std::string_view png) {
+  if (!is_finite(corner)) return;
+  body_ += "<image";
+  if (turned) {
+    const std::string right = number(corner.x + height), down = number(corner.y);
+    body_.append(" transform=\"matrix(0 1 -1 0 ")
+        .append(right)
+        .append(" ")
+        .append(down)
+        .append(")\"");
+    corner = {0, 0};
+  }
+  body_ += attribute("x", corner.x) + attribute("y", corner.y) + attribute("width", width) +
+           attribute("height", height) + attribute("preserveAspectRatio", "none") +
+           attribute("pointer-events", "none") + " href=\"data:image/png;base64,";
+  append_base64(std::as_bytes(std::span(png)), body_);
+  body_ += "\"/>\n";
 }
 
 void Svg::open_clip(Px corner, double width, double height) {
@@ -143,21 +172,28 @@ void Svg::place(const Svg& drawing, Px corner) {
   body_ += attribute("x", corner.x) + attribute("y", corner.y) +
            attribute("width", drawing.width_) + attribute("height", drawing.height_) + ">\n" +
            drawing.body_ + "</svg>\n";
+  colors_.insert(drawing.colors_.begin(), drawing.colors_.end());
 }
 
-std::string Svg::inline_text() const {
+void Svg::set_data(std::string_view name, std::string_view value) {
+  data_ += attribute(std::string("data-").append(name), escape_xml(value));
+}
+
+std::string Svg::inline_text() const { return document(data_); }
+
+std::string Svg::document(std::string_view data) const {
   ZP_REQUIRE(open_.empty());
   const std::string width = number(width_), height = number(height_);
   std::string text = "<svg xmlns=\"http://www.w3.org/2000/svg\"";
   text += attribute("width", width) + attribute("height", height);
   text.append(" viewBox=\"0 0 ").append(width).append(" ").append(height).append("\"");
   text += attribute("font-family", "DejaVu Sans, Verdana, sans-serif");
-  return text.append(">\n").append(body_).append("</svg>\n");
+  return text.append(data).append(">\n").append(body_).append("</svg>\n");
 }
 
 std::string Svg::file_text() const {
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  return text.append(inline_text());
+  return text.append(document({}));
 }
 
 }  // namespace zonepack::report

@@ -26,7 +26,8 @@ EventLog::EventLog(std::function<std::string_view(ZoneId)> name_of) : name_of_(s
 }
 
 Result<void> EventLog::write_to(const std::string& path) {
-  auto file = AtomicFile::create(path);
+  at_once_ = path == "-";
+  auto file = at_once_ ? AtomicFile::standard_output() : AtomicFile::create(path);
   if (!file) return file.error();
   file_.emplace(std::move(file).value());
   return {};
@@ -37,7 +38,7 @@ void EventLog::on_event(const Event& event) noexcept {
   crypto_generichash_update(&hash_, bytes_of(line), line.size());
   if (!file_) return;
   buffer_ += line;
-  if (buffer_.size() >= kBufferBytes) flush();
+  if (at_once_ || buffer_.size() >= kBufferBytes) flush();
 }
 
 void EventLog::flush() {
@@ -64,6 +65,10 @@ std::string EventLog::hash() const {
 }
 
 std::string EventLog::line_of(const Event& event) const {
+  return event_json(event, event.zone == kNoZone ? std::string_view() : name_of_(event.zone));
+}
+
+std::string event_json(const Event& event, std::string_view zone) {
   std::string line = "{\"cycle\":" + std::to_string(event.cycle);
   const auto number = [&line](const char* key, auto value) {
     line += ",\"";
@@ -75,7 +80,7 @@ std::string EventLog::line_of(const Event& event) const {
   line += ",\"event\":";
   line += json_quoted(to_string(event.kind));
   if (event.zone != kNoZone) {
-    line += ",\"zone\":" + json_quoted(name_of_(event.zone));
+    line += ",\"zone\":" + json_quoted(zone);
     number("signatures", event.signatures);
     number("bytes", event.bytes);
     number("generation", event.generation);

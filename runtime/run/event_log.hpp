@@ -14,6 +14,9 @@
 
 namespace zonepack {
 
+// An event as a line of the event log, '\n' included. zone: its name, where a zone is meant.
+std::string event_json(const Event& event, std::string_view zone);
+
 // The event log: one JSON object a line, in order, integers and names only, so that the same run
 // gives the same bytes on every machine. Fields, always in this order:
 //
@@ -42,7 +45,8 @@ class EventLog final : public EventSink {
   // name_of gives a zone's name; it must outlive this object.
   explicit EventLog(std::function<std::string_view(ZoneId)> name_of);
 
-  // Writes the log to a file too, which appears whole at close(). Before the first event.
+  // Writes the log to a file too, which appears whole at close(); "-": to standard output, each
+  // event at once. Before the first event.
   Result<void> write_to(const std::string& path);
 
   void on_event(const Event& event) noexcept override;
@@ -59,6 +63,7 @@ class EventLog final : public EventSink {
   std::function<std::string_view(ZoneId)> name_of_;
   crypto_generichash_state hash_;
   std::optional<AtomicFile> file_;
+  bool at_once_ = false;
   std::string buffer_;
   Error write_error_;
 };

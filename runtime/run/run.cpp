@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "platform/base/require.hpp"
+#include "runtime/run/output_check.hpp"
 #include "runtime/run/rejected_text.hpp"
 
 namespace zonepack {
@@ -47,7 +48,7 @@ Run::Run(RunPlan plan, std::shared_ptr<MapVersion> first)
 Outcome<void> Run::open(const RunPorts& ports) {
   if (!plan_.events.empty()) {
     if (const auto opened = log_.write_to(plan_.events); !opened) {
-      return cannot_write(plan_.events, opened.error());
+      return cannot_write(output_name(plan_.events), opened.error());
     }
   }
   ports_.emplace(ports);
@@ -96,11 +97,13 @@ void Run::on_event(const Event& event) noexcept {
 
 void Run::after_cycle(const CycleRecord& cycle) {
   follow(cycle.state.map);
+  for (RunObserver* const observer : observers_) observer->after_cycle(cycle, *accounted_);
   statistics_.after_cycle(cycle);
 }
 
 Outcome<void> Run::close_events() {
-  if (const auto closed = log_.close(); !closed) return cannot_write(plan_.events, closed.error());
+  if (const auto closed = log_.close(); !closed)
+    return cannot_write(output_name(plan_.events), closed.error());
   return {};
 }
 

@@ -38,11 +38,13 @@ struct RunPorts {
   ZoneDirectory* directory = nullptr;  // where readers find resident zones
 };
 
-// Sees the events of a run in their order, each with the map that it is about.
+// Sees the events of a run in their order, each with the map that it is about, and what each cycle
+// did. Cycles may be missing where the account did not keep up.
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
   virtual void on_event(const Event& event, const MapVersion& map) noexcept = 0;
+  virtual void after_cycle(const CycleRecord& /*cycle*/, const MapVersion& /*map*/) noexcept {}
 };
 
 // One run: its maps, the cycle over the one in use, its event log and its statistics. A live run,

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 
 #include "runtime/report/format.hpp"
+#include "runtime/report/thinning.hpp"
 
 namespace zonepack {
 namespace {
@@ -71,6 +73,40 @@ std::vector<ZoneId> by_first_visit(const RunTrace& trace) {
   return order;
 }
 
+// Indices of the samples that draw a route: of a long run the corners, by 1 cm or more, and where
+// the zone changes, so that the drawing's size has a bound.
+template <typename Place>
+std::vector<std::size_t> route_samples(const RunTrace& trace, Place&& place) {
+  constexpr std::size_t kMostPoints = 4'000;
+  constexpr std::array<double, 3> kTolerance = {0.01, 0.01, 0.4};  // m, m, a zone's number
+  std::vector<std::size_t> samples;
+  std::vector<report::Waypoint> points;
+  for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+    const TraceSample& s = trace.samples[i];
+    const std::optional<Point2> p = place(s);
+    if (!p) continue;
+    samples.push_back(i);
+    const bool in_zone = s.tracked_zone < trace.zones.size();
+    points.push_back({s.t_s, {p->x_m, p->y_m, in_zone ? static_cast<double>(s.tracked_zone) : -1}});
+  }
+  if (samples.size() <= kMostPoints) return samples;
+  std::vector<std::size_t> kept;
+  for (const std::size_t i : report::corners_of(points, kTolerance, kMostPoints)) {
+    kept.push_back(samples[i]);
+  }
+  return kept;
+}
+
+std::optional<Point2> estimated(const TraceSample& s) {
+  if (!s.pose_valid) return std::nullopt;
+  return Point2{s.estimate.x_m, s.estimate.y_m};
+}
+
+std::optional<Point2> true_place(const TraceSample& s) {
+  if (!s.has_truth) return std::nullopt;
+  return Point2{s.truth.x_m, s.truth.y_m};
+}
+
 }  // namespace
 
 std::vector<Color> zone_colors(const RunTrace& trace) {
@@ -128,11 +164,14 @@ report::FloorPlan route_plan(const RunTrace& trace, const std::vector<Color>& co
   std::vector<bool> visited(trace.zones.size(), false);
   for (const TraceSample& s : trace.samples) {
     if (s.tracked_zone < visited.size()) visited[s.tracked_zone] = true;
-    if (s.pose_valid) {
-      const Color color = s.tracked_zone < colors.size() ? colors[s.tracked_zone] : report::kQuiet;
-      plan.route.push_back({{s.estimate.x_m, s.estimate.y_m}, color});
-    }
-    if (s.has_truth) plan.true_route.push_back({s.truth.x_m, s.truth.y_m});
+  }
+  for (const std::size_t i : route_samples(trace, estimated)) {
+    const TraceSample& s = trace.samples[i];
+    const Color color = s.tracked_zone < colors.size() ? colors[s.tracked_zone] : report::kQuiet;
+    plan.route.push_back({*estimated(s), color});
+  }
+  for (const std::size_t i : route_samples(trace, true_place)) {
+    plan.true_route.push_back(*true_place(trace.samples[i]));
   }
   for (std::size_t i = 0; i < trace.zones.size(); ++i) {
     const TraceZone& zone = trace.zones[i];

@@ -8,7 +8,7 @@
 namespace zonepack {
 namespace {
 
-Failure map_failure(const std::string& folder, const Error& error,
+Failure map_failure(const std::string& folder, const Error& error, const std::string& why,
                     std::optional<ByteCount> budget) {
   if (error.code == ErrorCode::kTooLarge && error.detail > 0) {
     const std::string limit = budget ? "budget of " + format_byte_count(*budget)
@@ -20,6 +20,11 @@ Failure map_failure(const std::string& folder, const Error& error,
                             format_byte_count(static_cast<ByteCount>(error.detail)) +
                             ", over the " + limit +
                             "; zonepack verify tells whether it is as zonepack build writes it"};
+  }
+  if (!why.empty()) {
+    return {error.code, folder + "/" + std::string(kManifestName) + ": " + why +
+                            "; build the map again with zonepack build, or copy it again; zonepack "
+                            "verify checks it"};
   }
   return {error.code, folder + ": cannot be opened as a map: " + to_string(error.code) + " (" +
                           std::to_string(error.detail) +
@@ -49,9 +54,11 @@ Outcome<RunInputs> read_run_inputs(const RunChoices& choices) {
   }
   const std::optional<ByteCount> budget =
       choices.budget ? choices.budget : inputs.settings.memory.budget;
-  Result<Catalog> catalog = Catalog::open(folder, inputs.settings.memory.payload.mask,
-                                          budget.value_or(default_budget_limit()) + kFreeMapBytes);
-  if (!catalog) return map_failure(folder, catalog.error(), budget);
+  std::string why;
+  Result<Catalog> catalog =
+      Catalog::open(folder, inputs.settings.memory.payload.mask,
+                    budget.value_or(default_budget_limit()) + kFreeMapBytes, &why);
+  if (!catalog) return map_failure(folder, catalog.error(), why, budget);
   inputs.catalog = std::move(catalog).value();
 
   if (!choices.corrections.empty()) {

@@ -96,36 +96,65 @@ bool has_truth(const RunTrace& trace) {
 void add_figures(const RunReportInput& input, Report& page) {
   const RunTrace& trace = input.trace;
   const bool truth = has_truth(trace);
+  const report::FloorPlan plan = route_plan(trace, zone_colors(trace));
   page.figures.push_back(
       {"The route, from above",
        std::string("The way the robot believed to drive, from the circle to the square, in the "
                    "colour of the zone it believed to be in; zones it never entered are grey.") +
            (truth ? " Dashed: the true way." : ""),
-       report::draw_floor_plan(route_plan(trace, zone_colors(trace)))});
-  page.figures.push_back(
-      {"Signatures loaded and unloaded since the start",
-       with_baseline("Each step is a zone that was loaded or unloaded as a whole; the band below "
-                     "names the zone the robot was in. The fewer the better: every step is reading "
-                     "and decoding.",
-                     input, "RTAB-Map moves single signatures in and out all the time."),
-       report::draw_chart(loading_chart(trace, input.baseline))});
-  page.figures.push_back(
-      {"Signatures in memory",
-       with_baseline("Those resident and those being loaded; together they may not pass the limit.",
-                     input,
-                     "RTAB-Map starts with the whole map and unloads until its threshold holds."),
-       report::draw_chart(signatures_chart(trace, input.baseline))});
-  page.figures.push_back(
-      {"Bytes charged",
-       "All memory that grows with the map, in the units it is handed out in; a zone counts from "
-       "the moment its load begins. The line may touch the budget and never cross it.",
-       report::draw_chart(bytes_chart(trace))});
+       report::draw_floor_plan(plan), report::draw_floor_plan(report::narrowed(plan)),
+       report::plan_json(plan)});
+  const auto add_chart = [&page](const char* title, std::string caption,
+                                 const report::Chart& chart) {
+    page.figures.push_back({title, std::move(caption), report::draw_chart(chart),
+                            report::draw_chart(report::narrowed(chart)),
+                            report::chart_json(chart)});
+  };
+  add_chart("Signatures loaded and unloaded since the start",
+            with_baseline("Each step is a zone that was loaded or unloaded as a whole; the band "
+                          "below names the zone the robot was in. The fewer the better: every "
+                          "step is reading and decoding.",
+                          input, "RTAB-Map moves single signatures in and out all the time."),
+            loading_chart(trace, input.baseline));
+  add_chart("Signatures in memory",
+            with_baseline("Those resident and those being loaded; together they may not pass the "
+                          "limit.",
+                          input,
+                          "RTAB-Map starts with the whole map and unloads until its threshold "
+                          "holds."),
+            signatures_chart(trace, input.baseline));
+  add_chart("Bytes charged",
+            "All memory that grows with the map, in the units it is handed out in; a zone counts "
+            "from the moment its load begins. The line may touch the budget and never cross it.",
+            bytes_chart(trace));
   if (!truth) return;
-  page.figures.push_back(
-      {"Error of the pose",
-       "How far the believed position was from the true one. Corrections pull it "
-       "down, wheel slip and late or wrong corrections push it up.",
-       report::draw_chart(pose_error_chart(trace))});
+  add_chart("Error of the pose",
+            "How far the believed position was from the true one. Corrections pull it down, wheel "
+            "slip and late or wrong corrections push it up.",
+            pose_error_chart(trace));
+}
+
+report::Playback playback_of(const RunTrace& trace) {
+  report::Playback playback;
+  playback.duration_s = trace.duration_s;
+  ZoneId zone = kNoZone;
+  for (const TraceSample& s : trace.samples) {
+    playback.poses.push_back(
+        {s.t_s, s.pose_valid, {s.estimate.x_m, s.estimate.y_m}, s.estimate.yaw_rad});
+    if (s.tracked_zone == zone) continue;
+    if (zone < trace.zones.size()) playback.stays.back().to_s = s.t_s;
+    zone = s.tracked_zone;
+    if (zone < trace.zones.size()) playback.stays.push_back({zone, s.t_s, trace.duration_s});
+  }
+  for (const TraceHold& hold : trace.holds) {
+    playback.holds.push_back({hold.zone, hold.from_s, hold.ready_s, hold.to_s});
+  }
+  for (const TraceEvent& event : trace.events) {
+    playback.events.push_back(
+        {event.t_s, event.event,
+         event.zone < trace.zones.size() ? std::size_t{event.zone} : report::PlayEvent::kNoZone});
+  }
+  return playback;
 }
 
 // Seconds spent in every zone, as the tracker saw it.
@@ -164,6 +193,7 @@ Report make_run_report(const RunReportInput& input) {
   page.facts = facts_of(input);
   add_figures(input, page);
   add_zone_table(input.trace, page);
+  page.playback = playback_of(input.trace);
   page.origin = "Map " + input.map + ", " + format_count(input.summary.cycles) + " cycles, " +
                 format_count(input.summary.can_frames) + " CAN frames (" +
                 format_count(input.summary.can_rejected) + " rejected) in " +

@@ -55,6 +55,7 @@ void RunStatistics::change_map(const ZoneGraph& graph, std::span<const ZoneNeed>
   needs_ = needs;
   limits_ = limits;
   held_.assign(needs.size(), Held::kNot);
+  holds_.end_all(static_cast<double>(now_ns_ - start_ns_) * 1e-9);
   true_zone_ = kNoZone;
 }
 
@@ -66,6 +67,10 @@ ZoneId RunStatistics::drawn(ZoneId zone) const noexcept {
 void RunStatistics::begin_with(ZoneId zone) noexcept {
   held_[zone] = Held::kResident;
   charged_.add(needs_[zone]);
+  if (keeps_trace_) {
+    holds_.begin(zone, 0);
+    holds_.ready(zone, 0);
+  }
 }
 
 void RunStatistics::on_event(const Event& event) noexcept {
@@ -77,6 +82,7 @@ void RunStatistics::on_event(const Event& event) noexcept {
       event_stride_ *= 2;
     }
   }
+  if (keeps_trace_ && event.zone != kNoZone) keep_hold(event);
   switch (event.kind) {
     case EventKind::kLoadStarted:
       held_[event.zone] = Held::kCharged;
@@ -94,6 +100,32 @@ void RunStatistics::on_event(const Event& event) noexcept {
     default:
       break;
   }
+}
+
+void RunStatistics::keep_hold(const Event& event) {
+  const ZoneId zone = drawn(event.zone);
+  const double t_s = static_cast<double>(event.t_ns) * 1e-9;
+  if (zone == kNoZone) return;  // not on the drawing
+  switch (event.kind) {
+    case EventKind::kLoadStarted:
+      holds_.begin(zone, t_s);
+      break;
+    case EventKind::kLoadDone:
+      holds_.ready(zone, t_s);
+      break;
+    case EventKind::kLoadGivenUp:
+    case EventKind::kLoadFailed:
+    case EventKind::kEvicted:
+      holds_.end(zone, t_s);
+      break;
+    default:
+      break;
+  }
+}
+
+RunTrace RunStatistics::take_trace() {
+  trace_.holds = holds_.take(static_cast<double>(now_ns_ - start_ns_) * 1e-9);
+  return std::move(trace_);
 }
 
 void RunStatistics::after_cycle(const CycleRecord& cycle) {

@@ -9,6 +9,7 @@
 #include "runtime/control/cycle.hpp"
 #include "runtime/control/event.hpp"
 #include "runtime/memory/residency.hpp"
+#include "runtime/run/hold_keeper.hpp"
 #include "runtime/run/run_files.hpp"
 #include "runtime/run/run_summary.hpp"
 #include "runtime/run/run_trace.hpp"
@@ -39,8 +40,8 @@ CycleRecord record_of(std::int64_t now_ns, const CycleState& state, const Reside
 class RunStatistics final : public EventSink {
  public:
   // A longer run keeps every second of what it has, then less and less often: 12 MB of samples and
-  // 2 MB of events for drawing, 4 MB of position errors. Of two samples, the one that shows trouble
-  // or charges more stays.
+  // 2 MB of events for drawing, 1 MB of holds, 4 MB of position errors. Of two samples, the one
+  // that shows trouble or charges more stays.
   static constexpr std::size_t kMostSamples = 60'000;
   static constexpr std::size_t kMostTraceEvents = 20'000;
   static constexpr std::size_t kMostErrors = 1'000'000;
@@ -67,7 +68,7 @@ class RunStatistics final : public EventSink {
 
   // Without keep_trace() before the run, empty: a robot has no memory for it.
   void keep_trace() noexcept { keeps_trace_ = true; }
-  RunTrace take_trace() { return std::move(trace_); }
+  RunTrace take_trace();
 
  private:
   enum class Held : std::uint8_t { kNot, kCharged, kResident };
@@ -75,6 +76,7 @@ class RunStatistics final : public EventSink {
   void check_limits(const CycleRecord& cycle);
   void watch_zone(const CycleRecord& cycle);
   void keep_error(double error_m);
+  void keep_hold(const Event& event);
   void keep_sample(const CycleRecord& cycle);
   void thin_samples();
   ZoneId drawn(ZoneId zone) const noexcept;
@@ -110,6 +112,7 @@ class RunStatistics final : public EventSink {
   double sample_period_s_;
   bool keeps_trace_ = false;
   RunTrace trace_;
+  HoldKeeper holds_;
 };
 
 }  // namespace zonepack

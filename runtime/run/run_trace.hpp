@@ -52,6 +52,14 @@ struct TraceEvent {
   ZoneId zone = kNoZone;
 };
 
+// A zone that took memory: from the start of its load until it was given up, failed or evicted.
+struct TraceHold {
+  ZoneId zone = kNoZone;
+  double from_s = 0;
+  double ready_s = 0;  // resident from here on; to_s: it never was
+  double to_s = 0;
+};
+
 struct RunTrace {
   std::vector<TraceZone> zones;  // by ZoneId
   std::vector<TracePortal> portals;
@@ -61,6 +69,7 @@ struct RunTrace {
   double duration_s = 0;
   std::vector<TraceSample> samples;
   std::vector<TraceEvent> events;
+  std::vector<TraceHold> holds;  // by from_s
 };
 
 }  // namespace zonepack

@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "platform/atomic_file.hpp"
+#include "platform/base/counted.hpp"
 #include "platform/base/json_text.hpp"
 
 namespace zonepack {
@@ -27,10 +28,10 @@ std::string fixed(double value, int decimals) {
   return {text.data(), end};
 }
 
-// "2441160 bytes (2.33 MiB)".
+// "2.33 MiB (2441160 bytes)".
 std::string bytes_text(ByteCount bytes) {
-  return std::to_string(bytes) + " bytes (" +
-         fixed(static_cast<double>(bytes) / static_cast<double>(kMiB), 2) + " MiB)";
+  return fixed(static_cast<double>(bytes) / static_cast<double>(kMiB), 2) + " MiB (" +
+         counted(bytes, "byte") + ")";
 }
 
 class JsonObject {
@@ -174,10 +175,10 @@ std::string summary_table(const RunSummary& s) {
              fixed(t.p9999, 1) + " us, most " + fixed(t.max, 1) + " us";
     };
     row("process, at most", bytes_text(s.live->process_peak_bytes));
-    row("beside the map", bytes_text(s.live->overhead_bytes));
-    row("control thread", count(s.live->minor_faults + s.live->major_faults) + " page faults, " +
-                              count(s.live->allocations) + " allocations, " +
-                              count(s.live->missed_deadlines) + " missed deadlines");
+    row("besides the map", bytes_text(s.live->overhead_bytes));
+    row("control thread", counted(s.live->minor_faults + s.live->major_faults, "page fault") +
+                              ", " + counted(s.live->allocations, "allocation") + ", " +
+                              counted(s.live->missed_deadlines, "missed deadline"));
     row("cycle", timing(s.live->cycle_us));
     row("wake-up", timing(s.live->wakeup_us));
     if (s.live->ready_count > 0) row("load to map_ready", timing(s.live->ready_us));
@@ -186,7 +187,7 @@ std::string summary_table(const RunSummary& s) {
                           (s.live->memory_locked ? "" : "memory not locked ") +
                           (s.live->lines_not_working == 0
                                ? ""
-                               : count(s.live->lines_not_working) + " lines not working"));
+                               : counted(s.live->lines_not_working, "line") + " not working"));
     }
   }
   return text;
@@ -194,14 +195,16 @@ std::string summary_table(const RunSummary& s) {
 
 Outcome<void> check_limits(const RunSummary& summary) {
   if (summary.budget_violations == 0) return {};
-  return failure("a limit was exceeded in " + std::to_string(summary.budget_violations) + " cycles",
+  return failure("a limit was exceeded in " + counted(summary.budget_violations, "cycle"),
                  ErrorCode::kTooLarge);
 }
 
-Outcome<void> write_summary(const RunSummary& summary, const std::string& json_path) {
+Outcome<void> write_summary(const RunSummary& summary, const std::string& json_path,
+                            bool output_is_taken) {
   Failures failed;
   const bool json_on_output = json_path == "-";
-  std::cout << (json_on_output ? summary_json(summary) : summary_table(summary)) << std::flush;
+  std::ostream& output = output_is_taken ? std::cerr : std::cout;
+  output << (json_on_output ? summary_json(summary) : summary_table(summary)) << std::flush;
   if (!std::cout) failed.add(failure("standard output: cannot be written", ErrorCode::kIo));
   if (!json_on_output && !json_path.empty()) {
     const auto written = write_file_atomically(json_path, summary_json(summary));

@@ -17,7 +17,9 @@ std::string summary_json(const RunSummary& summary);
 std::string summary_table(const RunSummary& summary);
 
 // Prints the table, and writes the JSON to a file; "-" prints the JSON instead; "" writes none.
-Outcome<void> write_summary(const RunSummary& summary, const std::string& json_path);
+// output_is_taken: standard output holds something else, and the table goes to standard error.
+Outcome<void> write_summary(const RunSummary& summary, const std::string& json_path,
+                            bool output_is_taken);
 
 // Fails when the run exceeded a limit.
 Outcome<void> check_limits(const RunSummary& summary);

@@ -17,6 +17,7 @@ using flatbuffers::Offset;
 constexpr std::size_t kPageBytes = kMostMessageBytes - 2048;
 constexpr std::size_t kMostChanges = 1000;
 constexpr std::size_t kMostRouteZones = 128;
+constexpr std::size_t kMostOutlinePoints = 128;  // 1 KiB: fits after a full page
 
 static_assert(static_cast<int>(wire::EventKind::End) == static_cast<int>(EventKind::kEnd));
 static_assert(static_cast<int>(wire::ZoneState::Resident) ==
@@ -29,12 +30,14 @@ Offset<flatbuffers::String> text(FlatBufferBuilder& builder, std::string_view wo
 Offset<wire::Zone> zone_row(FlatBufferBuilder& builder, const ServedMap& map, ZoneId zone) {
   const CatalogZone& entry = map.catalog.zones[zone];
   const ZoneTable::Row& row = map.zones[zone];
+  const ZoneActivity::Row active = map.activity.of(zone);
   const auto name = text(builder, entry.name);
   const auto type = text(builder, entry.zone_type);
   const ByteCount bytes = entry.slots * (kSlotBytes + kTableBytesPerSlot);
   return wire::CreateZone(builder, zone, name, type, entry.signatures, bytes, row.generation,
                           static_cast<wire::ZoneState>(row.state), row.wanted, row.pinned,
-                          row.leases);
+                          row.leases, active.loads, active.evictions, active.entered,
+                          active.last_load_ns);
 }
 
 wire::Signature signature_row(const fb::Node& node, ZoneId zone, double distance_m) {
@@ -58,16 +61,43 @@ Offset<wire::Event> event_row(FlatBufferBuilder& builder, const ServedMap& map,
 }  // namespace
 
 Message answer_zones(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
-                     std::uint32_t first) {
+                     std::uint32_t first, bool active_only) {
   FlatBufferBuilder& builder = to.builder();
   const auto total = static_cast<std::uint32_t>(map.catalog.zones.size());
   std::vector<Offset<wire::Zone>> rows;
+  if (active_only) {
+    for (const ZoneActivity::Row& row : map.activity.rows()) {
+      if (row.zone < first || row.zone >= total) continue;
+      if (builder.GetSize() + 4 * rows.size() >= kPageBytes) break;
+      rows.push_back(zone_row(builder, map, row.zone));
+    }
+    return to.reply(
+        id, wire::CreateZones(builder, first, total, builder.CreateVector(rows), map.epoch));
+  }
   for (ZoneId zone = first; zone < total && builder.GetSize() + 4 * rows.size() < kPageBytes;
        ++zone) {
     rows.push_back(zone_row(builder, map, zone));
   }
   return to.reply(id,
                   wire::CreateZones(builder, first, total, builder.CreateVector(rows), map.epoch));
+}
+
+Message answer_outlines(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
+                        std::uint32_t first) {
+  FlatBufferBuilder& builder = to.builder();
+  const auto total = static_cast<std::uint32_t>(map.catalog.zones.size());
+  std::vector<Offset<wire::Outline>> rows;
+  for (ZoneId zone = first; zone < total && builder.GetSize() + 4 * rows.size() < kPageBytes;
+       ++zone) {
+    const Ring& ring = map.catalog.zones[zone].polygon.outer;
+    const std::size_t step = (ring.size() + kMostOutlinePoints - 1) / kMostOutlinePoints;
+    std::vector<wire::OutlinePoint> points;
+    for (std::size_t i = 0; i < ring.size(); i += step) {
+      points.emplace_back(static_cast<float>(ring[i].x_m), static_cast<float>(ring[i].y_m));
+    }
+    rows.push_back(wire::CreateOutline(builder, zone, builder.CreateVectorOfStructs(points)));
+  }
+  return to.reply(id, wire::CreateOutlines(builder, first, total, builder.CreateVector(rows)));
 }
 
 Message answer_zone(MessageBuilder& to, std::uint64_t id, const ServedMap& map, ZoneId zone) {

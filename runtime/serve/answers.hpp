@@ -36,7 +36,9 @@ Message answer_status(MessageBuilder& to, std::uint64_t id, const ServedMap& map
                       const LiveStatus& status, const ServerCounters& counters,
                       const LineBoard* lines = nullptr);
 Message answer_zones(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
-                     std::uint32_t first);
+                     std::uint32_t first, bool active_only = false);
+Message answer_outlines(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
+                        std::uint32_t first);
 Message answer_zone(MessageBuilder& to, std::uint64_t id, const ServedMap& map, ZoneId zone);
 Message answer_changes(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
                        std::uint64_t since);

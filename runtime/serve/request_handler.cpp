@@ -82,14 +82,17 @@ void RequestHandler::greet(const Call& call) {
   std::uint64_t signatures = 0;
   for (const CatalogZone& zone : catalog.zones) signatures += zone.signatures;
   const auto program = builder.CreateString("zoned");
+  const auto release = builder.CreateString(ports_.release);
+  const auto commit = builder.CreateString(ports_.commit);
   const auto lineage = builder.CreateVector(catalog.lineage.data(), catalog.lineage.size());
   const auto version = builder.CreateVector(catalog.version.data(), catalog.version.size());
   const auto kind_list =
       builder.CreateVector(reinterpret_cast<const wire::FdKind*>(kinds.data()), kinds.size());
-  const auto welcome = wire::CreateWelcome(
-      builder, kProtocolVersion, program, lineage, version, call.map.serial,
-      static_cast<std::uint32_t>(catalog.zones.size()), signatures, kind_list,
-      call.from.looking_only, kMostMessageBytes, requests_per_s_, ports_.lease_ns, call.map.epoch);
+  const auto welcome =
+      wire::CreateWelcome(builder, kProtocolVersion, program, lineage, version, call.map.serial,
+                          static_cast<std::uint32_t>(catalog.zones.size()), signatures, kind_list,
+                          call.from.looking_only, kMostMessageBytes, requests_per_s_,
+                          ports_.lease_ns, call.map.epoch, release, commit);
   call.from.greeted = true;
   call.from.answer(message.reply(call.id(), welcome), descriptors);
 }
@@ -144,8 +147,13 @@ bool RequestHandler::look(const Call& call) {
                                      ports_.lines));
       return true;
     case RequestBody::AskZones:
+      call.from.answer(answer_zones(message, call.id(), call.map,
+                                    request.body_as_AskZones()->first(),
+                                    request.body_as_AskZones()->active_only()));
+      return true;
+    case RequestBody::AskOutlines:
       call.from.answer(
-          answer_zones(message, call.id(), call.map, request.body_as_AskZones()->first()));
+          answer_outlines(message, call.id(), call.map, request.body_as_AskOutlines()->first()));
       return true;
     case RequestBody::AskZone: {
       const wire::AskZone& ask = *request.body_as_AskZone();

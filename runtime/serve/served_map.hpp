@@ -8,6 +8,7 @@
 #include "runtime/map/catalog.hpp"
 #include "runtime/protocol/messages.hpp"
 #include "runtime/serve/node_store.hpp"
+#include "runtime/serve/zone_activity.hpp"
 #include "runtime/serve/zone_table.hpp"
 #include "runtime/zones/zone_graph.hpp"
 
@@ -20,6 +21,7 @@ struct ServedMap {
   std::uint32_t serial = 1;  // incremented at every change of map; never 0
   std::uint32_t epoch = 0;   // of the shared memory while it is in use; 0: there is none
   ZoneTable zones;
+  ZoneActivity activity{};
   std::optional<NodeStore> nodes;  // nothing when the manifest can no longer be read
 
   // By number or, where one is given, by name; kNoZone when there is none.

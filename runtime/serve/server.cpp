@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <utility>
 
+#include "platform/account.hpp"
 #include "platform/clock.hpp"
 
 namespace zonepack {
@@ -24,7 +26,7 @@ std::string listen_reason(const Error& error) {
       return "the path is over " + std::to_string(LocalListener::kMostPath) + " bytes";
     default:
       return std::string("cannot be made: ") + std::strerror(static_cast<int>(error.detail)) +
-             "; the folder must exist and be writable for this user (serve.socket)";
+             "; the folder must exist and be writable for this user (serve.socket, --socket)";
   }
 }
 
@@ -35,8 +37,9 @@ Failure cannot_listen(const std::string& path, const Error& error) {
 std::unique_ptr<ServedMap> served_map(const Catalog& catalog, const ZoneGraph& graph,
                                       std::uint32_t serial, std::uint32_t epoch,
                                       std::span<const ZoneId> pinned) {
-  auto map = std::make_unique<ServedMap>(ServedMap{
-      catalog, graph, serial, epoch, ZoneTable(catalog.zones.size(), pinned), std::nullopt});
+  auto map = std::make_unique<ServedMap>(ServedMap{catalog, graph, serial, epoch,
+                                                   ZoneTable(catalog.zones.size(), pinned),
+                                                   ZoneActivity(), std::nullopt});
   if (Result<NodeStore> nodes = NodeStore::open(catalog); nodes) {
     map->nodes.emplace(std::move(nodes).value());
   }
@@ -85,12 +88,32 @@ Outcome<std::unique_ptr<Server>> Server::open(const ServeSettings& settings,
 Outcome<void> Server::add_listener(const std::string& path, const std::string& mode,
                                    bool looking_only) {
   if (path.empty()) return {};
+  std::optional<std::uint32_t> group;
+  if (!settings_.group.empty()) {
+    const auto number = group_number(settings_.group);
+    if (!number) {
+      const bool none = number.error().code == ErrorCode::kNotFound;
+      return failure("socket " + path + ": group \"" + settings_.group + "\": " +
+                         (none ? "there is no such group; groupadd --system " + settings_.group +
+                                     ", or name one of /etc/group (serve.group)"
+                               : reason_text(number.error())),
+                     number.error().code);
+    }
+    group = *number;
+  }
   const std::optional<unsigned> bits = socket_mode(mode);
   if (!bits) {
     return failure("socket " + path + ": mode \"" + mode +
                    "\" is none; expected octal digits such as 0660");
   }
-  Result<LocalListener> listener = LocalListener::listen(path, *bits);
+  Result<LocalListener> listener = LocalListener::listen(path, *bits, group);
+  if (!listener && group && listener.error().detail == EPERM) {
+    return failure("socket " + path + ": cannot be given to group \"" + settings_.group +
+                       "\" (serve.group): zoned's user is not in it; in the unit: "
+                       "SupplementaryGroups=" +
+                       settings_.group,
+                   listener.error().code);
+  }
   if (!listener) return cannot_listen(path, listener.error());
   listeners_.push_back({std::move(listener).value(), looking_only});
   const auto token = static_cast<std::uint32_t>(listeners_.size() - 1);
@@ -177,6 +200,7 @@ void Server::take_events() {
       if (event.map != map_->serial) continue;
     }
     map_->zones.take(event);
+    map_->activity.take(event);
     counters_.not_keeping_up += event.kind == EventKind::kNotKeepingUp ? 1 : 0;
     events_.push_back(event);
     if (event.kind == EventKind::kMapRefused) {

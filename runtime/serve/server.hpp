@@ -26,7 +26,7 @@ namespace zonepack {
 //
 // Bounds: settings.clients at once; accepting kMostAccepts and, for each client, kMostRequests a
 // turn; what Session, CommandRouter and NodeStore state.
-// Memory: below 100 KiB, and for each client that does not read up to Session::kMostWaiting here
+// Memory: below 116 KiB, and for each client that does not read up to Session::kMostWaiting here
 // and kKernelBytes and one message in the kernel. Tables that grow with the map are charged with it
 // (table_bytes).
 // Threads: all calls by one, except stop() by any. Does not throw, but may run out of memory.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 
 #include "platform/base/result.hpp"
 #include "platform/bounded_writer.hpp"
@@ -41,6 +42,9 @@ struct ServerPorts {
   // Writes the recording of the last minutes and returns its bytes. Takes as long as the writer
   // allows; called in a thread of its own. Empty: there is no recording.
   std::function<Result<std::uint64_t>(BoundedWriter& to)> dump{};
+
+  // Of the program, for those who ask which one runs.
+  std::string release = "unknown", commit = "unknown";
 
   const LineBoard* lines = nullptr;  // of the robot; null: none
 };

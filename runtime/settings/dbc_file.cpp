@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "platform/base/file_kind.hpp"
+#include "platform/base/nearest_word.hpp"
 #include "runtime/settings/dbc_parser.hpp"
-#include "runtime/settings/nearest_word.hpp"
 
 namespace zonepack {
 namespace {

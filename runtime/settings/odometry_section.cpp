@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <set>
 
+#include "platform/base/nearest_word.hpp"
 #include "runtime/odometry/det_math.hpp"
 #include "runtime/settings/canopen_section.hpp"
 #include "runtime/settings/dbc_file.hpp"
 #include "runtime/settings/dbc_unit.hpp"
 #include "runtime/settings/field.hpp"
-#include "runtime/settings/nearest_word.hpp"
 
 namespace zonepack {
 namespace {

@@ -11,8 +11,9 @@ namespace zonepack {
 // Who may talk to zoned, and how much. The modes of the socket files decide who: octal digits, as
 // for chmod.
 struct ServeSettings {
-  std::string socket = "/run/zoned/zoned.sock";  // empty: none
+  std::string socket = "auto";  // socket_place.hpp resolves it; empty: none
   std::string mode = "0660";
+  std::string group;           // of the sockets' files; empty: the process's
   std::string looking_socket;  // for requests that change nothing; empty: none
   std::string looking_mode = "0666";
   std::uint32_t clients = 64;          // at once, on both sockets

@@ -370,9 +370,14 @@ const Fields<MarkerPlace>& marker_fields() {
 const Fields<ServeSettings>& serve_fields() {
   using S = ServeSettings;
   static const Fields<S> fields = {
-      {"socket", &S::socket, 0, 0, "", "local socket for other programs; \"\": none"},
+      {"socket", &S::socket, 0, 0, "",
+       "local socket for other programs; auto: /run/zoned/zoned.sock, and "
+       "$XDG_RUNTIME_DIR/zonepack/zoned.sock for a user other than root who has one; \"\": none; "
+       "--socket"},
       {"mode", &S::mode, 0, 0, "",
        "mode of the socket file, in octal as for chmod: who may use it"},
+      {"group", &S::group, 0, 0, "",
+       "group of the socket files, by its name; zoned's user must be in it; empty: its own"},
       {"looking_socket", &S::looking_socket, 0, 0, "",
        "a second socket, through which nothing can be changed; empty: none"},
       {"looking_mode", &S::looking_mode, 0, 0, "", "mode of that socket file"},

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "runtime/settings/nearest_word.hpp"
+#include "platform/base/nearest_word.hpp"
 
 namespace zonepack {
 namespace {

@@ -2,7 +2,9 @@
 // zoned: the robot's program. Wiring only; `replay` lives in runtime/replay, `run` in runtime/live,
 // `listen` in runtime/listen, `calibrate` in runtime/calibrate.
 #include <CLI/CLI.hpp>
+#include <functional>
 
+#include "platform/command_line/command_line.hpp"
 #include "platform/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/calibrate/calibrate_command.hpp"
@@ -22,6 +24,9 @@ using zonepack::ReplayArguments;
 using zonepack::RunArguments;
 
 using zonepack::RunChoices;
+
+// What the command line asked for; run once all of it was understood.
+using Command = std::function<int()>;
 
 CLI::Option* add_file(CLI::App& app, const char* name, std::string& target, const char* help) {
   return app.add_option(name, target, help)->type_name("FILE");
@@ -78,7 +83,7 @@ void add_choices(CLI::App& app, RunChoices& choices) {
       ->type_name("BYTES_PER_S");
 }
 
-void add_replay(CLI::App& app, ReplayArguments& arguments, int& exit_code) {
+void add_replay(CLI::App& app, ReplayArguments& arguments, Command& command) {
   CLI::App& replay = *app.add_subcommand(
       "replay", "drives a recorded run through the robot's own cycle, on simulated time");
   const auto drawing = [&replay](const char* name, std::string& target, const char* help) {
@@ -91,12 +96,19 @@ void add_replay(CLI::App& app, ReplayArguments& arguments, int& exit_code) {
       ->type_name("LOG");
   add_file(replay, "--recording", arguments.recording,
            "what zoned run --record or zonectl dump wrote: instead of settings, map and log");
-  add_file(replay, "--events", arguments.events, "write the event log, one JSON object a line");
+  add_file(replay, "--events", arguments.events,
+           "write the event log, one JSON object a line ('-': standard output)");
   add_file(replay, "--json", arguments.json, "write the summary as JSON ('-': standard output)");
   drawing("--report", arguments.report, "draw the run: .html, .svg or .png");
   drawing("--picture", arguments.picture, "draw only its route, loading curves and bytes");
   add_file(replay, "--baseline", arguments.baseline,
            "RTAB-Map's own curve of this run (CSV), to draw beside ours");
+  zonepack::add_examples(
+      replay,
+      {"zoned replay --config robot.yaml --map map --can drive.log --corrections fixes.txt",
+       "zoned replay --config robot.yaml --map map --can drive.log --budget 8MiB --json - \\\n"
+       "  --report run.html",
+       "zoned replay --recording run.zpr --events events.jsonl"});
   replay.callback([&] {
     if (arguments.recording.empty()) {
       need("--config", arguments.config);
@@ -108,11 +120,11 @@ void add_replay(CLI::App& app, ReplayArguments& arguments, int& exit_code) {
         throw CLI::ValidationError("--recording", "holds settings, map and inputs; give no other");
       }
     }
-    exit_code = zonepack::run_replay(arguments);
+    command = [&arguments] { return zonepack::run_replay(arguments); };
   });
 }
 
-void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
+void add_run(CLI::App& app, RunArguments& arguments, Command& command) {
   CLI::App& run = *app.add_subcommand(
       "run", "keeps the map's zones in memory while the robot drives, until SIGTERM");
   add_choices(run, arguments);
@@ -127,23 +139,40 @@ void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
         return source.has_value();
       })
       ->required();
-  add_file(run, "--events", arguments.events, "write the event log, one JSON object a line");
+  add_file(run, "--events", arguments.events,
+           "write the event log, one JSON object a line ('-': standard output, as they happen)");
   add_file(run, "--json", arguments.json, "write the summary as JSON ('-': standard output)");
   add_file(run, "--record-can", arguments.record_can,
            "write the CAN frames that were received, as candump -l does");
+  run.add_flag("--quiet", arguments.quiet,
+               "print warnings and errors only, and no line for each zone entered, loaded or "
+               "evicted");
+  run.add_option_function<std::string>(
+         "--socket", [&arguments](const std::string& path) { arguments.socket = path; },
+         "where other programs reach this zoned, over $ZONED_SOCKET and serve.socket; '': nowhere")
+      ->type_name("PATH");
   run.add_flag("--allow-degraded", arguments.allow_degraded,
                "go on without real-time priority, locked memory or a CAN interface");
   add_file(run, "--record", arguments.record, "write every input, for zoned replay --recording");
   run.add_flag("--check", arguments.check,
                "only say what would be refused, and what of this computer could be better");
+  zonepack::add_examples(
+      run,
+      {"zoned run --config robot.yaml --map map --can socketcan:can0 --check",
+       "zoned run --config robot.yaml --map map --can socketcan:can0 --quiet",
+       "zoned run --config robot.yaml --map map --can log:drive.log@10 --corrections fixes.txt",
+       "zoned run --config robot.yaml --map map --can socketcan:can0 --record run.zpr"});
   run.callback([&] {
     need("--config", arguments.config);
     arguments.program = zonepack::version();
-    exit_code = arguments.check ? zonepack::check_run(arguments) : zonepack::run_live(arguments);
+    arguments.commit = zonepack::commit();
+    command = [&arguments] {
+      return arguments.check ? zonepack::check_run(arguments) : zonepack::run_live(arguments);
+    };
   });
 }
 
-void add_listen(CLI::App& app, zonepack::ListenArguments& arguments, int& exit_code) {
+void add_listen(CLI::App& app, zonepack::ListenArguments& arguments, Command& command) {
   CLI::App& listen = *app.add_subcommand(
       "listen", "shows what the settings read from a CAN bus or a log, and what looks wrong");
   add_file(listen, "--config", arguments.config, "settings of the robot (YAML)")->required();
@@ -180,21 +209,21 @@ void add_listen(CLI::App& app, zonepack::ListenArguments& arguments, int& exit_c
            "sigma_yaw");
   add_file(listen, "--json", arguments.json,
            "write the last picture as JSON ('-': standard output, and text to standard error)");
-  listen.footer(
-      "Examples:\n"
-      "  zoned listen --config robot.yaml --can socketcan:can0\n"
-      "  zoned listen --config robot.yaml --can socketcan:can0 --expect forward=1 --duration 10\n"
-      "  zoned listen --config robot.yaml --can socketcan:can0 --expect left-wheel=1\n"
-      "  zoned listen --config robot.yaml --can drive.log --corrections fixes.txt --json -");
   listen.callback([&] {
     if (!arguments.truth.empty() && !arguments.corrections.empty()) {
       throw CLI::ExcludesError("--truth", "--corrections");
     }
-    exit_code = zonepack::run_listen(arguments);
+    command = [&arguments] { return zonepack::run_listen(arguments); };
   });
+  zonepack::add_examples(
+      listen,
+      {"zoned listen --config robot.yaml --can socketcan:can0",
+       "zoned listen --config robot.yaml --can socketcan:can0 --expect forward=1 --duration 10",
+       "zoned listen --config robot.yaml --can socketcan:can0 --expect left-wheel=1",
+       "zoned listen --config robot.yaml --can drive.log --corrections fixes.txt --json -"});
 }
 
-void add_calibrate(CLI::App& app, zonepack::CalibrateArguments& arguments, int& exit_code) {
+void add_calibrate(CLI::App& app, zonepack::CalibrateArguments& arguments, Command& command) {
   CLI::App& calibrate = *app.add_subcommand(
       "calibrate",
       "estimates wheel scale and track from a drive whose true path is known, or says "
@@ -206,11 +235,11 @@ void add_calibrate(CLI::App& app, zonepack::CalibrateArguments& arguments, int& 
   add_file(calibrate, "--truth", arguments.truth, "true poses: t x y z qx qy qz qw")->required();
   add_file(calibrate, "--json", arguments.json,
            "write the result as JSON ('-': standard output, and text to standard error)");
-  calibrate.footer(
-      "Examples:\n"
-      "  zoned calibrate --config robot.yaml --can drive.log --truth path.txt\n"
-      "  zoned calibrate --config robot.yaml --can drive.log --truth path.txt --json -");
-  calibrate.callback([&] { exit_code = zonepack::run_calibrate(arguments); });
+  calibrate.callback(
+      [&] { command = [&arguments] { return zonepack::run_calibrate(arguments); }; });
+  zonepack::add_examples(
+      calibrate, {"zoned calibrate --config robot.yaml --can drive.log --truth path.txt",
+                  "zoned calibrate --config robot.yaml --can drive.log --truth path.txt --json -"});
 }
 
 }  // namespace
@@ -235,22 +264,27 @@ int main(int argc, char** argv) {
   add_file(app, "--config", config, "settings of the robot (YAML), for --safe-outputs");
   app.require_subcommand(0, 1);  // so that CLI11 names a word it does not know
   ReplayArguments arguments;
-  int exit_code = 0;
-  add_replay(app, arguments, exit_code);
+  Command command;
+  add_replay(app, arguments, command);
   RunArguments run_arguments;
-  add_run(app, run_arguments, exit_code);
+  add_run(app, run_arguments, command);
   zonepack::ListenArguments listen_arguments;
-  add_listen(app, listen_arguments, exit_code);
+  add_listen(app, listen_arguments, command);
   zonepack::CalibrateArguments calibrate_arguments;
-  add_calibrate(app, calibrate_arguments, exit_code);
+  add_calibrate(app, calibrate_arguments, command);
+  zonepack::add_examples(
+      app, {"zoned run --config robot.yaml --map map --can socketcan:can0 --check",
+            "zoned run --config robot.yaml --map map --can socketcan:can0",
+            "zoned replay --config robot.yaml --map map --can drive.log --report run.html",
+            "zoned --safe-outputs --config /etc/zonepack/zoned.yaml"});
   try {
-    app.parse(argc, argv);
+    zonepack::parse_command_line(app, argc, argv);
     if (safe_outputs == !app.get_subcommands().empty() || safe_outputs == config.empty()) {
       throw CLI::RequiredError("A subcommand, or --safe-outputs --config FILE,");
     }
-    if (safe_outputs) exit_code = zonepack::run_safe_outputs(config);
+    if (safe_outputs) command = [&config] { return zonepack::run_safe_outputs(config); };
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  return exit_code;
+  return command();
 }

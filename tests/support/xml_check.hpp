@@ -9,7 +9,8 @@
 namespace zonepack {
 
 // A small strict XML reader: returns what is wrong with a document, or "". Knows elements, quoted
-// attributes, the five named entities and character references; reports use nothing else.
+// attributes, the five named entities, and HTML's scripts, whose text is anything but the end tag;
+// reports use nothing else.
 class XmlCheck {
  public:
   static std::string problem_in(std::string_view text) { return XmlCheck(text).run(); }
@@ -96,6 +97,14 @@ class XmlCheck {
     if (take('/')) return take('>') ? "" : fault("empty element");
     if (!take('>')) return fault("start tag");
     open_.push_back(element);
+    if (element == "script") {
+      const std::size_t end = text_.find("</script", at_);
+      if (end == std::string_view::npos) return fault("a script without its end");
+      if (text_.substr(at_, end - at_).find("<!--") != std::string_view::npos) {
+        return fault("a script that hides its end");
+      }
+      at_ = end;
+    }
     return "";
   }
 

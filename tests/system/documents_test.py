@@ -14,7 +14,7 @@ from pathlib import Path
 
 PROGRAMS = ("zonepack", "zoned", "zonectl")
 # Programs of others, whose options stand in our documents too.
-FOREIGN_PROGRAMS = ("apt-get", "candump", "cmake", "ctest", "flatc", "git", "rsync", "systemctl")
+FOREIGN_PROGRAMS = ("apt-get", "candump", "cmake", "ctest", "flatc", "git", "groupadd", "rsync", "systemctl")
 # Files of the kernel that look like settings.
 FOREIGN_KEYS = ("memory.max", "memory.high", "memory.current", "memory.peak", "memory.events", "memory.stat")
 FLAG = re.compile(r"(?<![\w-])--[a-z][a-z0-9-]*")

@@ -18,6 +18,7 @@ ARROWS = {
     "platform/linux": "platform platform/base",
     "platform/linux/gpiod": "platform",
     "platform/version": "",
+    "platform/command_line": "",
 
     "runtime/pack_format": "platform/base",
     "runtime/pack_format/file": "platform platform/base runtime/pack_format",
@@ -50,11 +51,12 @@ ARROWS = {
     "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
     "runtime/listen": "platform platform/base platform/sim runtime/calibrate runtime/live runtime/odometry runtime/run"
                       " runtime/settings",
-    "runtime/zoned": "platform platform/version runtime/calibrate runtime/listen runtime/live runtime/pack_format/file"
+    "runtime/zoned": "platform platform/command_line platform/version runtime/calibrate runtime/listen runtime/live"
+                     " runtime/pack_format/file"
                      " runtime/recording runtime/replay runtime/report",
     "runtime/ctl/commands": "platform platform/base runtime/control runtime/odometry runtime/pack_format/file"
-                            " runtime/protocol runtime/serve runtime/settings",
-    "runtime/ctl": "platform/signals.hpp platform/version runtime/ctl/commands runtime/protocol",
+                            " runtime/protocol runtime/run runtime/serve runtime/settings",
+    "runtime/ctl": "platform/command_line platform/signals.hpp platform/version runtime/ctl/commands runtime/protocol",
 
     "packer/record": "",
     "packer/sources": "packer/record platform/base",
@@ -67,12 +69,13 @@ ARROWS = {
     "packer/verify": "packer/decode packer/record packer/zones platform platform/base runtime/pack_format"
                      " runtime/pack_format/file",
     "packer/export": "packer/decode packer/record platform/base runtime/pack_format",
+    "packer/preview": "packer/console packer/decode packer/outline packer/zones platform/base runtime/report",
     "packer/console": "platform platform/base runtime/pack_format",
     "packer/inspect": "packer/console packer/decode packer/verify platform/base runtime/pack_format/file",
     "packer/commands": "packer/build packer/console packer/decode packer/export packer/inspect packer/outline"
-                       " packer/sources packer/verify packer/zones platform platform/base runtime/pack_format"
-                       " runtime/pack_format/file runtime/report",
-    "packer": "platform/signals.hpp packer/commands platform/version runtime/pack_format/file",
+                       " packer/preview packer/sources packer/verify packer/zones platform platform/base"
+                       " platform/command_line runtime/pack_format runtime/pack_format/file runtime/report",
+    "packer": "platform/command_line platform/signals.hpp packer/commands platform/version runtime/pack_format/file",
 }
 
 GPIOD = r"gpiod\.h"
@@ -86,9 +89,9 @@ FOREIGN = {
     r"sodium": "runtime/pack_format/file runtime/run",
     r"yaml-cpp/": "runtime/settings runtime/live",
     r"Eigen/": "runtime/calibrate",
-    r"CLI/": "runtime/zoned runtime/ctl packer packer/commands packer/console",
+    r"CLI/": "platform/command_line runtime/zoned runtime/ctl packer packer/commands packer/console",
     r"sqlite3\.h": "packer/sources",
-    r"zlib\.h": "packer/sources",
+    r"zlib\.h": "packer/sources packer/preview",
     r"nlohmann/": "packer/commands packer/console packer/inspect packer/outline packer/verify packer/zones",
     r"opencv": "",
 }

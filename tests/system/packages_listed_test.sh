@@ -9,6 +9,7 @@ listed() {  # LIST DOCUMENT
     { echo "$2 and toolchains/$1.txt list different packages"; exit 1; }
 }
 listed packages toolchains/README.md
+listed packages-test toolchains/README.md
 listed packages-cross toolchains/README.md
 listed packages-deb toolchains/README.md
 listed packages-prove tests/README.md

@@ -43,6 +43,14 @@ if(TARGET zonepack)
                         GTest::gtest_main)
   add_dependencies(build_test zonepack)
   gtest_discover_tests(build_test TEST_PREFIX "system/" DISCOVERY_TIMEOUT 60)
+
+  add_test(NAME system/packer_examples
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/packer_examples_test.py $<TARGET_FILE:zonepack>
+                   ${PROJECT_SOURCE_DIR}/tests/data)
+  add_test(NAME system/packer_hints
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/packer_hints_test.py $<TARGET_FILE:zonepack>
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/packer_examples system/packer_hints PROPERTIES TIMEOUT 300)
 endif()
 
 # Maps that ask for more memory than the budget: at start, at SIGHUP, and after the refusal.

@@ -35,7 +35,7 @@ holds "$work/one/map.html" 'main lobby with nurses station and waiting areas'
 [ "$(head -c 4 "$work/map.png" | tail -c 3)" = PNG ] || fail "map.png is no PNG"
 
 # A page stands alone, and no part of a file is left behind.
-if grep -qE '<script|src=|href=' "$work"/one/*.html; then fail "a page refers to something outside"; fi
+if grep -qE '<(script|img|iframe|link)[^>]* (src|href)=|url\(|@import' "$work"/one/*.html; then fail "a page refers to something outside"; fi
 [ -z "$(find "$work" -name '*.part-*')" ] || fail "a part was left behind"
 
 # Another kind of file is a mistake in the usage.
@@ -43,3 +43,8 @@ status=0
 "$bin/zonepack" report "$work/map" --out "$work/map.pdf" 2>"$work/usage" || status=$?
 [ "$status" = 2 ] || fail "expected exit code 2 for map.pdf, got $status"
 holds "$work/usage" '.html, .svg or .png'
+
+# README's picture is what the demo draws. After a wanted change: cp build/demo/scenario1.svg tests/data/readme/
+"$source/toolchains/demo.sh" "$bin" "$work/demo" >/dev/null
+cmp "$work/demo/scenario1.svg" "$source/tests/data/readme/scenario1.svg" ||
+  fail "tests/data/readme/scenario1.svg differs from the demo's: toolchains/run demo, then copy build/demo/scenario1.svg"

@@ -25,6 +25,10 @@ if(TARGET zonepack AND TARGET zoned)
   add_test(NAME system/report
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/report_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
+  add_test(NAME system/report_pages
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/report/pages_test.py
+                   ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/report_pages PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600)
 endif()
 if(TARGET zonepack AND TARGET zoned AND TARGET zonectl)
   add_test(NAME system/documents
@@ -74,10 +78,14 @@ set_tests_properties(system/dbc_other_reader PROPERTIES SKIP_RETURN_CODE 77)
 if(TARGET zonectl)
   zonepack_test_program(serve/made_up_run.cpp zonepack_test_support zonepack_runtime)
   if(TARGET zonepack)
+    add_test(NAME system/console
+             COMMAND ${CMAKE_CURRENT_LIST_DIR}/serve/console_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                     ${PROJECT_SOURCE_DIR})
     add_test(NAME system/ending
              COMMAND ${CMAKE_CURRENT_LIST_DIR}/serve/ending_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                      ${PROJECT_SOURCE_DIR})
   endif()
   add_test(NAME system/zonectl
-           COMMAND ${CMAKE_CURRENT_LIST_DIR}/serve/zonectl_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/serve/zonectl_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
 endif()

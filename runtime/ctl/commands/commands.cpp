@@ -1,19 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/ctl/commands/commands.hpp"
 
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <iostream>
 
 #include "platform/atomic_file.hpp"
+#include "platform/base/byte_count.hpp"
+#include "platform/base/counted.hpp"
 #include "platform/clock.hpp"
+#include "platform/output_place.hpp"
 #include "platform/terminal.hpp"
+#include "runtime/ctl/commands/answer_json.hpp"
 #include "runtime/ctl/commands/figures.hpp"
 #include "runtime/ctl/commands/session.hpp"
 #include "runtime/ctl/commands/watch_view.hpp"
+#include "runtime/ctl/commands/zone_metrics.hpp"
 #include "runtime/odometry/det_math.hpp"
 #include "runtime/settings/settings.hpp"
+#include "runtime/settings/socket_place.hpp"
 
 namespace zonepack {
 namespace {
@@ -62,16 +70,15 @@ void print_status(const wire::Status& status) {
   for (const std::string& line : line_words(status)) std::cout << "line " << line << '\n';
 }
 
-void print_notice(const wire::Reply& notice) {
-  if (const wire::Events* const events = notice.body_as_Events();
-      events != nullptr && events->events() != nullptr) {
-    for (const wire::Event* event : *events->events()) std::cout << event_line(*event) << '\n';
+// One document, to a file or standard output.
+Outcome<void> put_json(const std::string& file, const std::string& text) {
+  if (file == "-") {
+    std::cout << text << std::flush;
+    if (!std::cout) return failure("standard output: cannot be written", ErrorCode::kIo);
+    return {};
   }
-  if (const wire::Lost* const lost = notice.body_as_Lost()) {
-    std::cout << "(" << lost->events() << " events lost)\n";
-  }
-  if (notice.body_as_MapChanged() != nullptr) std::cout << "(another map)\n";
-  std::cout.flush();
+  const auto written = write_file_atomically(file, text);
+  return written ? Outcome<void>() : cannot_write(file, written.error());
 }
 
 }  // namespace
@@ -82,7 +89,7 @@ Outcome<std::string> socket_path(const CtlArguments& arguments) {
   if (from_environment != nullptr && *from_environment != '\0') {
     return std::string(from_environment);
   }
-  if (arguments.config.empty()) return ServeSettings().socket;
+  if (arguments.config.empty()) return socket_to_ask();
   const LoadedSettings loaded = load_settings(arguments.config);
   if (!loaded.ok()) {
     std::string all;
@@ -92,53 +99,89 @@ Outcome<std::string> socket_path(const CtlArguments& arguments) {
   if (loaded.settings.serve.socket.empty()) {
     return failure(arguments.config + ": serve.socket is empty: no zoned listens");
   }
-  return loaded.settings.serve.socket;
+  const std::string& socket = loaded.settings.serve.socket;
+  return socket == ServeSettings().socket ? socket_to_ask() : socket;
 }
 
 Outcome<void> ctl_status(const std::string& socket, const std::string& json) {
   return with_status(socket, [&json](const wire::Status& status) -> Outcome<void> {
-    if (json.empty()) {
-      print_status(status);
-    } else if (json == "-") {
-      std::cout << status_json(status);
-    } else if (const auto written = write_file_atomically(json, status_json(status)); !written) {
-      return cannot_write(json, written.error());
-    }
+    if (!json.empty()) return put_json(json, status_json(status));
+    print_status(status);
     return {};
   });
 }
 
 Outcome<void> ctl_metrics(const std::string& socket) {
-  return with_status(socket, [](const wire::Status& status) -> Outcome<void> {
-    std::cout << metrics_text(status);
-    return {};
-  });
-}
-
-Outcome<void> ctl_zones(const std::string& socket) {
   auto session = CtlSession::open(socket);
   if (!session) return session.error();
-  std::printf("%-24s %-10s %-16s %10s %12s\n", "zone", "state", "", "signatures", "bytes");
+  const wire::Welcome& welcome = session->connection().welcome();
+  std::string text = build_metrics(welcome);
+  const auto status = session->ask<wire::Status>([](auto& b) { return wire::CreateAskStatus(b); });
+  if (!status) return status.error();
+  text += metrics_text(**status);
+  ZoneMetrics zones;
+  for (std::uint32_t first = 0; first != kNoZone;) {
+    const auto page =
+        session->ask<wire::Zones>([&](auto& b) { return wire::CreateAskZones(b, first, true); });
+    if (!page) return page.error();
+    const auto* const rows = (*page)->zones();
+    if (rows == nullptr || rows->size() == 0) break;
+    for (const wire::Zone* const zone : *rows) {
+      zones.add(*zone);
+      first = zone->zone() + 1;
+    }
+  }
+  std::cout << text << zones.text();
+  return {};
+}
+
+Outcome<void> ctl_zones(const std::string& socket, const std::string& json) {
+  auto session = CtlSession::open(socket);
+  if (!session) return session.error();
+  std::string text;
+  if (!json.empty()) {
+    const auto done = each_zone(*session, [&text](const wire::Zone& zone) {
+      text += (text.empty() ? "" : ",\n") + zone_json(zone);
+    });
+    return done ? put_json(json, "{\"zones\":[\n" + text + "\n]}\n") : done;
+  }
+  std::printf("%-24s %-10s %-20s %10s %10s %7s\n", "zone", "state", "", "signatures", "size",
+              "entered");
   return each_zone(*session, [](const wire::Zone& zone) {
     std::string notes = zone.wanted() ? "wanted" : "";
     if (zone.pinned()) notes += notes.empty() ? "pinned" : " pinned";
     if (zone.leases() > 0) notes += notes.empty() ? "leased" : " leased";
-    std::printf("%-24s %-10s %-16s %10u %12llu\n", std::string(view_of(zone.name())).c_str(),
+    std::printf("%-24s %-10s %-20s %10u %10s %7u\n", std::string(view_of(zone.name())).c_str(),
                 to_string(zone.state()), notes.c_str(), zone.signatures(),
-                static_cast<unsigned long long>(zone.bytes()));
+                short_bytes(zone.bytes()).c_str(), zone.entered_total());
   });
 }
 
-Outcome<void> ctl_events(const std::string& socket) {
+Outcome<void> ctl_events(const std::string& socket, const std::string& json) {
   auto session = CtlSession::open(socket);
   if (!session) return session.error();
-  session->connection().on_notice(print_notice);
+  std::ofstream file;
+  if (!json.empty() && json != "-") {
+    if (const auto possible = check_output_place(json); !possible) {
+      return cannot_write(json, possible.error());
+    }
+    file.open(json, std::ios::app);
+    if (!file) return cannot_write(json, {ErrorCode::kIo, errno});
+  }
+  std::ostream& output = file.is_open() ? file : std::cout;
+  session->connection().on_notice([&output, &json](const wire::Reply& notice) {
+    output << (json.empty() ? notice_text(notice) : notice_json(notice)) << std::flush;
+  });
   watch_for_end();
   const auto subscribed =
       session->ask<wire::Done>([](auto& b) { return wire::CreateSubscribe(b, true); });
   if (!subscribed) return subscribed.error();
   while (!end_was_asked()) {
     if (auto heard = session->listen(200); !heard) return heard;
+    if (!output) {
+      return failure((file.is_open() ? json : "standard output") + ": cannot be written",
+                     ErrorCode::kIo);
+    }
   }
   return {};
 }
@@ -168,7 +211,7 @@ Outcome<void> ctl_pose(const std::string& socket, const PoseArguments& given) {
 }
 
 Outcome<void> ctl_route(const std::string& socket, const std::string& from, const std::string& to,
-                        bool hint) {
+                        bool hint, const std::string& json) {
   auto session = CtlSession::open(socket);
   if (!session) return session.error();
   const auto answer = session->ask<wire::Route>([&](auto& b) {
@@ -183,6 +226,7 @@ Outcome<void> ctl_route(const std::string& socket, const std::string& from, cons
       route.doors()->size() + 1 != route.names()->size()) {
     return failure("zoned's answer is no route");
   }
+  if (!json.empty()) return put_json(json, route_json(route));
   for (flatbuffers::uoffset_t i = 0; i < route.names()->size(); ++i) {
     std::printf("%s", route.names()->Get(i)->c_str());
     if (i < route.doors()->size()) {
@@ -206,7 +250,7 @@ Outcome<void> ctl_dump(const std::string& socket, const std::string& file) {
       session->ask<wire::Dumped>([](auto& b) { return wire::CreateDump(b); }, descriptors);
   if (!dumped) return dumped.error();
   if (const auto done = to->commit(); !done) return cannot_write(file, done.error());
-  std::cout << file << ": " << (*dumped)->bytes() << " bytes\n";
+  std::cout << file << ": " << counted((*dumped)->bytes(), "byte") << '\n';
   return {};
 }
 

@@ -5,7 +5,8 @@
 
 #include "platform/base/failure.hpp"
 
-// The commands of zonectl. Each writes what it did or found to standard output.
+// The commands of zonectl. Each writes what it did or found to standard output. json: the file that
+// gets it as JSON instead; "-": standard output; empty: as text.
 namespace zonepack {
 
 struct CtlArguments {
@@ -21,15 +22,15 @@ struct PoseArguments {
 };
 
 Outcome<void> ctl_status(const std::string& socket, const std::string& json);
-Outcome<void> ctl_zones(const std::string& socket);
-Outcome<void> ctl_events(const std::string& socket);
+Outcome<void> ctl_zones(const std::string& socket, const std::string& json);
+Outcome<void> ctl_events(const std::string& socket, const std::string& json);
 Outcome<void> ctl_watch(const std::string& socket);
 Outcome<void> ctl_metrics(const std::string& socket);
 Outcome<void> ctl_pin(const std::string& socket, const std::string& zone, bool pin);
 Outcome<void> ctl_freeze(const std::string& socket, bool freeze);
 Outcome<void> ctl_pose(const std::string& socket, const PoseArguments& pose);
 Outcome<void> ctl_route(const std::string& socket, const std::string& from, const std::string& to,
-                        bool hint);
+                        bool hint, const std::string& json);
 Outcome<void> ctl_dump(const std::string& socket, const std::string& file);
 
 }  // namespace zonepack

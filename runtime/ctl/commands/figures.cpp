@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <string_view>
 
+#include "platform/base/byte_count.hpp"
+#include "platform/base/counted.hpp"
 #include "platform/base/json_text.hpp"
 #include "runtime/pack_format/file/checksum.hpp"
 #include "runtime/serve/status_figures.hpp"
@@ -157,7 +161,11 @@ std::vector<std::string> figure_lines(const wire::Status& status) {
     if (figure.kind == Kind::kFlag) value = value == "1" ? "yes" : "no";
     std::string line = figure.key;
     line.resize(std::max<std::size_t>(line.size(), 22), ' ');
-    lines.push_back(line + " " + value);
+    line += " " + value;
+    if (std::string_view(figure.key).ends_with("_bytes")) {
+      line += "  (" + short_bytes(std::strtoull(value.c_str(), nullptr, 10)) + ")";
+    }
+    lines.push_back(line);
   }
   return lines;
 }
@@ -167,7 +175,7 @@ std::vector<std::string> line_words(const wire::Status& status) {
   each_line(status, [&words](const wire::Line& line, const std::string& name) {
     words.push_back(name + (line.active() ? " active" : " inactive") +
                     (line.working() ? "" : ", not working") + ", " +
-                    std::to_string(line.changes()) + " changes");
+                    counted(line.changes(), "change"));
   });
   return words;
 }
@@ -180,7 +188,7 @@ std::vector<std::string> complaints(const wire::Status& s) {
                     ", which is not in memory; raise memory.budget or preload.margin");
   }
   if (s.blocked()) {
-    lines.push_back("BLOCKED: a wanted zone does not fit beside what must stay" +
+    lines.push_back("BLOCKED: a wanted zone does not fit next to what must stay" +
                     std::string(s.frozen() ? "; zonectl unfreeze" : "; raise memory.budget"));
   }
   if (!s.can_up()) {

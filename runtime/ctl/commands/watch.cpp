@@ -58,15 +58,41 @@ Outcome<void> watch_lines(CtlSession& session, WatchView& view) {
   return {};
 }
 
+// The outlines of the zones that the view shows; a zoned that does not know the question gets no
+// plan drawn.
+FloorPlan read_plan(CtlSession& session) {
+  std::vector<FloorPlan::Outline> zones;
+  for (std::uint32_t total = 1; zones.size() < std::min<std::size_t>(total, kMostZones);) {
+    const auto first = static_cast<std::uint32_t>(zones.size());
+    const auto page =
+        session.ask<wire::Outlines>([&](auto& b) { return wire::CreateAskOutlines(b, first); });
+    if (!page || (*page)->outlines() == nullptr || (*page)->outlines()->size() == 0) break;
+    total = (*page)->total();
+    for (const wire::Outline* const outline : *(*page)->outlines()) {
+      FloorPlan::Outline& points = zones.emplace_back();
+      if (outline->points() == nullptr) continue;
+      for (const wire::OutlinePoint* const point : *outline->points()) {
+        points.push_back({point->x(), point->y()});
+      }
+    }
+  }
+  return {std::move(zones), terminal_shows_utf8()};
+}
+
 Outcome<void> watch_screen(CtlSession& session, WatchView& view) {
   FullScreen screen;
+  const bool color = terminal_shows_color();
+  std::uint32_t map = 0, map_now = 1;  // that the plan is of; in use
   const std::int64_t started_ns = monotonic_ns();
   while (!screen.ended()) {
     if (auto read = read_zones(session, view); !read) return read;
+    if (map != map_now) view.set_plan(read_plan(session));
+    map = map_now;
     const auto status = look(session, view, started_ns);
     if (!status) return status.error();
+    map_now = (*status)->map_serial();
     const TerminalSize size = terminal_size();
-    screen.show(view.picture(**status, {size.columns, size.rows}, true));
+    screen.show(view.picture(**status, {size.columns, size.rows}, color));
     if (screen.key(kPicture_ms) == 'q') break;
   }
   return {};

@@ -6,56 +6,22 @@
 #include <cstdio>
 #include <string_view>
 
+#include "platform/base/byte_count.hpp"
+#include "platform/base/counted.hpp"
 #include "runtime/control/event.hpp"
 #include "runtime/ctl/commands/figures.hpp"
+#include "runtime/ctl/commands/screen_line.hpp"
 
 namespace zonepack {
 namespace {
 
 constexpr double kTimeline_s = 120;
-constexpr std::size_t kMostEvents = 8;
-constexpr const char* kRed = "\x1b[31m";
-constexpr const char* kGreen = "\x1b[32m";
-constexpr const char* kYellow = "\x1b[33m";
-constexpr const char* kDim = "\x1b[2m";
-constexpr const char* kBold = "\x1b[1m";
-
-// One line that never grows wider than the terminal. A code point counts as one column.
-class Line {
- public:
-  Line(int columns, bool color) : columns_(columns), color_(color) {}
-
-  Line& add(std::string_view words, const char* style = nullptr) {
-    const bool styled = color_ && style != nullptr && width_ < columns_;
-    if (styled) text_ += style;
-    for (std::size_t i = 0; i < words.size();) {
-      std::size_t end = i + 1;
-      while (end < words.size() && (static_cast<unsigned char>(words[end]) & 0xC0) == 0x80) ++end;
-      if (width_ < columns_) {
-        // A name may hold anything; no control code of it reaches the terminal.
-        const bool printable = static_cast<unsigned char>(words[i]) >= 0x20 && words[i] != 0x7F;
-        text_ += printable ? std::string(words.substr(i, end - i)) : "?";
-        ++width_;
-      }
-      i = end;
-    }
-    if (styled) text_ += "\x1b[0m";
-    return *this;
-  }
-  Line& pad_to(int column) {
-    while (width_ < std::min(column, columns_)) add(" ");
-    return *this;
-  }
-  int left() const { return columns_ - width_; }
-  std::string done() const { return text_ + "\n"; }
-
- private:
-  const int columns_;
-  const bool color_;
-  int width_ = 0;
-  std::string text_;
-};
-
+constexpr std::size_t kMostEvents = 200;  // more than fit on any screen
+constexpr int kLeastEvents = 5;           // rows that the plan leaves to them
+constexpr int kLeastPlanRows = 6, kLeastPlanColumns = 30;
+constexpr int kPlanGap = 3, kEventColumns = 45;  // of events to the right of the plan
+constexpr int kTitle = 9;                        // columns of the titles on the left
+constexpr std::size_t kWidestName = 24;
 std::string format(const char* pattern, auto... values) {
   char text[160];
   std::snprintf(text, sizeof text, pattern, values...);
@@ -102,7 +68,7 @@ const char* style_of(const WatchView::Zone& zone) {
 }
 
 std::string budget_line(const wire::Status& status, int columns, bool color) {
-  Line line(columns, color);
+  ScreenLine line(columns, color);
   const std::string words =
       " " + short_bytes(status.charged_bytes()) + " of " + short_bytes(status.budget_bytes());
   line.add("budget   ", kBold);
@@ -117,12 +83,6 @@ std::string budget_line(const wire::Status& status, int columns, bool color) {
 }
 
 }  // namespace
-
-std::string short_bytes(std::uint64_t bytes) {
-  if (bytes < 1024) return format("%d B", static_cast<int>(bytes));
-  const double kib = static_cast<double>(bytes) / 1024;
-  return kib < 1024 ? format("%.0f KiB", kib) : format("%.2f MiB", kib / 1024);
-}
 
 std::string event_line(const wire::Event& event) {
   std::string line = format("%12.3f s  ", static_cast<double>(event.t_ns()) / 1e9);
@@ -149,8 +109,8 @@ void WatchView::add_event(const wire::Event& event) {
 std::string WatchView::picture(const wire::Status& status, Size size, bool color) const {
   std::vector<std::string> lines;
   const auto begin = [&](const char* title) {
-    Line line(size.columns, color);
-    line.add(title, kBold).pad_to(9);
+    ScreenLine line(size.columns, color);
+    line.add(title, kBold).pad_to(kTitle);
     return line;
   };
   const std::string zone(view_of(status.zone()));
@@ -164,9 +124,9 @@ std::string WatchView::picture(const wire::Status& status, Size size, bool color
   lines.push_back(budget_line(status, size.columns, color));
   lines.push_back(
       begin("loaded")
-          .add(format("%u of %u zones, %llu signatures  +%llu -%llu  not kept up %llu",
-                      status.zones_resident(), status.zones(),
-                      static_cast<unsigned long long>(status.resident_signatures()),
+          .add(format("%u of %s, %s  +%llu -%llu  not kept up %llu", status.zones_resident(),
+                      counted(status.zones(), "zone").c_str(),
+                      counted(status.resident_signatures(), "signature").c_str(),
                       static_cast<unsigned long long>(status.signatures_loaded_total()),
                       static_cast<unsigned long long>(status.signatures_unloaded_total()),
                       static_cast<unsigned long long>(status.not_keeping_up())))
@@ -180,7 +140,7 @@ std::string WatchView::picture(const wire::Status& status, Size size, bool color
 
   // The last two minutes, a column for each moment: names where a zone begins, '!' while the
   // robot's own zone is not in memory.
-  Line timeline = begin("2 min");
+  ScreenLine timeline = begin("2 min");
   const int cells = timeline.left();
   std::string before;
   std::string label;
@@ -200,30 +160,15 @@ std::string WatchView::picture(const wire::Status& status, Size size, bool color
   }
   lines.push_back(timeline.done());
 
-  // Zones in their order by name, so that each keeps its place.
-  std::size_t widest = 0;
-  for (const Zone& each : zones_) widest = std::max(widest, each.name.size());
-  const int cell = static_cast<int>(std::min<std::size_t>(widest, 24)) + 4;
-  const int across = std::max((size.columns - 9) / cell, 1);
-  const int events = static_cast<int>(std::min(events_.size(), kMostEvents));
-  const int room = std::max(size.rows - static_cast<int>(lines.size()) - events - 2, 1);
-  int shown_rows = 0;
-  std::size_t next = 0;
-  for (; next < zones_.size() && shown_rows < room; ++shown_rows) {
-    Line row = begin(shown_rows == 0 ? "zones" : "");
-    for (int i = 0; i < across && next < zones_.size(); ++i, ++next) {
-      const Zone& each = zones_[next];
-      row.add(mark_of(each), style_of(each)).add(each.name.substr(0, 24), style_of(each));
-      if (each.name == zone) row.add("<", kBold);
-      if (each.pinned) row.add("P");
-      if (each.leases > 0) row.add("L");
-      row.pad_to(9 + cell * (i + 1));
-    }
-    lines.push_back(row.done());
+  const std::string more = add_zones(status, size, color, lines);
+  const bool has_events = add_plan(status, size, color, lines);
+  const auto free =
+      static_cast<std::size_t>(std::max(size.rows - static_cast<int>(lines.size()) - 1, 0));
+  const std::size_t shown = has_events ? 0 : std::min(events_.size(), free);
+  for (std::size_t i = events_.size() - shown; i < events_.size(); ++i) {
+    lines.push_back(
+        begin(i == events_.size() - shown ? "events" : "").add(events_[i], kDim).done());
   }
-  for (const std::string& event : events_) lines.push_back(begin("").add(event, kDim).done());
-  const std::string more =
-      next < zones_.size() ? format("%zu zones more;  ", zones_.size() - next) : "";
   lines.push_back(
       begin("")
           .add(more + "q ends  # in memory  + loading  ? wanted  < robot  P pinned  L leased", kDim)
@@ -237,12 +182,81 @@ std::string WatchView::picture(const wire::Status& status, Size size, bool color
   return text;
 }
 
+// Zones in their order by name, so that each keeps its place; what the legend says of those that
+// find no room.
+std::string WatchView::add_zones(const wire::Status& status, Size size, bool color,
+                                 std::vector<std::string>& lines) const {
+  const std::string zone(view_of(status.zone()));
+  std::size_t widest = 0;
+  for (const Zone& each : zones_) widest = std::max(widest, each.name.size());
+  const int cell = static_cast<int>(std::min<std::size_t>(widest, kWidestName)) + 4;
+  const int across = std::max((size.columns - kTitle) / cell, 1);
+  // The plan and the events come after the zones: they share what is left in halves.
+  const int left = size.rows - static_cast<int>(lines.size()) - 1;
+  const int others = std::min(static_cast<int>(events_.size()), kLeastEvents);
+  const int room = std::max(plan_.empty() ? left - others : std::min(left - others, left / 2), 1);
+  std::size_t next = 0;
+  for (int shown = 0; next < zones_.size() && shown < room; ++shown) {
+    ScreenLine row(size.columns, color);
+    row.add(shown == 0 ? "zones" : "", kBold).pad_to(kTitle);
+    for (int i = 0; i < across && next < zones_.size(); ++i, ++next) {
+      const Zone& each = zones_[next];
+      row.add(mark_of(each), style_of(each)).add(each.name.substr(0, kWidestName), style_of(each));
+      if (each.name == zone) row.add("<", kBold);
+      if (each.pinned) row.add("P");
+      if (each.leases > 0) row.add("L");
+      row.pad_to(kTitle + cell * (i + 1));
+    }
+    lines.push_back(row.done());
+  }
+  return next < zones_.size() ? counted(zones_.size() - next, "zone") + " more;  " : "";
+}
+
+// The plan takes the free rows, with the last events to its right where the terminal is wide
+// enough (true), else leaves some rows to them.
+bool WatchView::add_plan(const wire::Status& status, Size size, bool color,
+                         std::vector<std::string>& lines) const {
+  const int free = size.rows - static_cast<int>(lines.size()) - 1;
+  if (plan_.empty() || free < kLeastPlanRows || size.columns < kLeastPlanColumns) return false;
+  const bool beside = plan_.columns_in(free) + kPlanGap + kEventColumns <= size.columns;
+  const int rows = beside ? free : free - std::min(static_cast<int>(events_.size()), kLeastEvents);
+  if (rows < kLeastPlanRows) return false;
+  const std::string zone(view_of(status.zone()));
+  std::vector<FloorPlan::Shade> shades;
+  for (const Zone& each : zones_) {
+    const bool resident = each.state == wire::ZoneState::Resident;
+    const bool filling = each.state == wire::ZoneState::Filling;
+    shades.push_back({.name = each.name,
+                      .style = style_of(each),
+                      .look = each.name == zone ? FloorPlan::Look::kOwn
+                              : resident        ? FloorPlan::Look::kResident
+                              : filling         ? FloorPlan::Look::kFilling
+                              : each.wanted     ? FloorPlan::Look::kWanted
+                                                : FloorPlan::Look::kAbsent});
+  }
+  std::optional<FloorPlan::Robot> robot;
+  if (const wire::PoseReport* const pose = status.pose();
+      pose != nullptr && pose->valid() && pose->pose() != nullptr) {
+    robot = {pose->pose()->x(), pose->pose()->y(), pose->pose()->yaw()};
+  }
+  std::vector<ScreenLine> drawn = plan_.draw({size.columns, rows}, shades, robot, color);
+  const int right = plan_.columns_in(rows) + kPlanGap;
+  const std::size_t shown = std::min(events_.size(), drawn.size());
+  for (std::size_t row = 0; row < drawn.size(); ++row) {
+    if (beside && row < shown) {
+      drawn[row].pad_to(right).add(events_[events_.size() - shown + row], kDim);
+    }
+    lines.push_back(drawn[row].done());
+  }
+  return beside;
+}
+
 std::string WatchView::line(const wire::Status& status) {
   const std::string zone(view_of(status.zone()));
   std::string text = (zone.empty() ? "in no zone" : "in " + zone) + "  " +
                      pose_words(status.pose()) + "  " + short_bytes(status.charged_bytes()) +
                      " of " + short_bytes(status.budget_bytes()) +
-                     format("  %u of %u zones", status.zones_resident(), status.zones());
+                     format("  %u of ", status.zones_resident()) + counted(status.zones(), "zone");
   for (const std::string& complaint : complaints(status)) {
     text += "  " + complaint.substr(0, complaint.find(':'));
   }

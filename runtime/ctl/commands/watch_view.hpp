@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/ctl/commands/floor_plan.hpp"
 #include "runtime/protocol/messages.hpp"
 
 namespace zonepack {
@@ -30,6 +31,9 @@ class WatchView {
 
   void set_zones(std::vector<Zone> zones) { zones_ = std::move(zones); }
 
+  // What the plan is drawn from; by the places of zones in set_zones().
+  void set_plan(FloorPlan plan) { plan_ = std::move(plan); }
+
   // Adds a status, received `at_s` seconds after the first, to the timeline.
   void add_status(const wire::Status& status, double at_s);
 
@@ -50,13 +54,16 @@ class WatchView {
     bool resident = false;
   };
 
+  std::string add_zones(const wire::Status& status, Size size, bool color,
+                        std::vector<std::string>& lines) const;
+  bool add_plan(const wire::Status& status, Size size, bool color,
+                std::vector<std::string>& lines) const;
+
+  FloorPlan plan_;
   std::vector<Zone> zones_;
   std::deque<Sample> timeline_;
   std::deque<std::string> events_;
 };
-
-// "1.50 MiB": for people.
-std::string short_bytes(std::uint64_t bytes);
 
 // One event as a line: "12.340 s  load_done R21".
 std::string event_line(const wire::Event& event);

@@ -27,18 +27,11 @@ inline constexpr ByteCount kTableBytesPerMap = 16 * kKiB;
 // Stored bytes of chunks being loaded into slots; the index of the pack being read comes on top.
 inline constexpr ByteCount kReadBufferBytes = 64 * kKiB;
 inline constexpr ByteCount kIndexBytesPerChunk = 96;  // its entry, and where it was loaded to
-inline constexpr ByteCount kIndexBytesPerPack = 512;
 // While a manifest is read, its bytes are held this many times: the file, and its copy and blocks
 // in a recording. The first kFreeMapBytes of that are part of the program's own memory, the 16 MiB
 // besides the budget; the rest is charged.
 inline constexpr ByteCount kManifestHeldTimes = 3;
 inline constexpr ByteCount kFreeMapBytes = 2 * kMiB;
-
-// The longest index of a pack with so many chunks, as the manifest counts them: the bytes that are
-// charged for it.
-constexpr ByteCount most_index_bytes(std::uint64_t chunks) noexcept {
-  return kIndexBytesPerPack + chunks * sizeof(fb::ChunkEntry);
-}
 
 using ZonePair = std::pair<ZoneId, ZoneId>;
 

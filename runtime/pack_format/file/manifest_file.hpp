@@ -9,6 +9,7 @@
 #include "runtime/pack_format/chunk_view.hpp"
 #include "runtime/pack_format/file/checksum.hpp"
 #include "runtime/pack_format/file/geometry.hpp"
+#include "runtime/pack_format/file/manifest_fault.hpp"
 #include "runtime/pack_format/file/pack_file.hpp"
 #include "runtime/pack_format/ids.hpp"
 #include "runtime/pack_format/limits.hpp"
@@ -39,13 +40,15 @@ struct ManifestTail {
 };
 static_assert(sizeof(ManifestTail) == 40);
 
-inline constexpr ByteCount kMaxManifestFileBytes =
-    kMaxManifestBytes + sizeof(ManifestHeader) + sizeof(ManifestTail);
+inline constexpr ByteCount kManifestFrameBytes = sizeof(ManifestHeader) + sizeof(ManifestTail);
+inline constexpr ByteCount kMaxManifestFileBytes = kMaxManifestBytes + kManifestFrameBytes;
 
 // Checks a whole manifest file and everything that its readers rely on: digest, structure, names
-// (present, unique, sorted, within limits), polygons, portals and edges between known zones, slot
-// tables, file names without a path. `file` must be aligned to 8. The result points into `file`.
-Result<const fb::Manifest*> check_manifest(ByteSpan file) noexcept;
+// (present, unique, sorted), all limits that a manifest can break, polygons, portals and edges
+// between known zones, slot tables, texts without control characters, file names without a path,
+// and no bytes that nothing refers to. `file` must be aligned to 8. The result points into `file`.
+// `fault` receives what is wrong and where.
+Result<const fb::Manifest*> check_manifest(ByteSpan file, ManifestFault* fault = nullptr) noexcept;
 
 // The digest at the end of a checked manifest file, which names the version of the map.
 Digest32 manifest_digest(ByteSpan file) noexcept;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstring>
 
+#include "runtime/pack_format/file/zone_name.hpp"
 #include "runtime/pack_format/struct_alignment.hpp"
 
 namespace zonepack {
@@ -26,8 +27,7 @@ bool entry_is_sound(const fb::ChunkEntry& entry, std::uint32_t signatures) noexc
                                  : entry.codec() == fb::ChunkCodec::Lz4;
   constexpr auto kKindBits = static_cast<fb::PayloadKind>(32);  // kinds that a mask can name
   return size_is_sound && entry.kind() < kKindBits && entry.decoded_size() > 0 &&
-         entry.decoded_size() <= kSlotBytes && entry.stored_size() > 0 &&
-         entry.stored_size() <= kSlotBytes && entry.first_signature() <= entry.last_signature() &&
+         entry.stored_size() > 0 && entry.first_signature() <= entry.last_signature() &&
          entry.last_signature() < signatures && entry.reserved() == 0 && entry.reserved2() == 0;
 }
 
@@ -48,8 +48,11 @@ Result<PackTail> check_tail(ByteSpan last_64_bytes, std::uint64_t file_size) noe
   if (tail.major != kPackMajor) return {ErrorCode::kBadVersion, tail.major};
   const std::uint64_t room = file_size - sizeof(PackTail);
   if (tail.index_offset < sizeof(PackHeader) || tail.index_offset > room ||
-      tail.index_size != room - tail.index_offset || tail.index_size > kMaxIndexBytes) {
+      tail.index_size != room - tail.index_offset) {
     return {ErrorCode::kTruncated, static_cast<std::int64_t>(tail.index_offset)};
+  }
+  if (is_over(LimitId::kIndexBytes, tail.index_size)) {
+    return over_limit(LimitId::kIndexBytes, tail.index_size);
   }
   return tail;
 }
@@ -72,12 +75,25 @@ Result<const fb::PackIndex*> check_index(ByteSpan header_16_bytes, ByteSpan inde
   const auto* const root = flatbuffers::GetRoot<fb::PackIndex>(index.data());
   if (!is_aligned(root->chunks())) return ErrorCode::kBadStructure;
   if (root->slot_bytes() != kSlotBytes) return {ErrorCode::kMismatch, root->slot_bytes()};
-  if (root->chunks()->size() > kMaxChunksPerPack || root->signatures() > kMaxSignaturesPerZone ||
-      root->zone()->size() > kMaxNameBytes) {
-    return ErrorCode::kTooLarge;
+  const std::pair<LimitId, std::uint64_t> measures[] = {
+      {LimitId::kChunksOfPack, root->chunks()->size()},
+      {LimitId::kSignaturesOfZone, root->signatures()},
+      {LimitId::kNameBytes, root->zone()->size()}};
+  for (const auto& [id, found] : measures) {
+    if (is_over(id, found)) return over_limit(id, found);
+  }
+  if (name_fault(root->zone()->string_view())) return ErrorCode::kBadValue;
+  if (index.size() > most_index_bytes(root->chunks()->size())) {
+    return {ErrorCode::kTooLarge, static_cast<std::int64_t>(index.size())};
   }
   std::uint64_t end = sizeof(PackHeader);
   for (const fb::ChunkEntry* entry : *root->chunks()) {
+    if (is_over(LimitId::kDecodedBytes, entry->decoded_size())) {
+      return over_limit(LimitId::kDecodedBytes, entry->decoded_size());
+    }
+    if (is_over(LimitId::kStoredBytes, entry->stored_size())) {
+      return over_limit(LimitId::kStoredBytes, entry->stored_size());
+    }
     if (entry->offset() != end || !entry_is_sound(*entry, root->signatures())) {
       return {ErrorCode::kBadStructure, static_cast<std::int64_t>(entry->offset())};
     }
@@ -106,9 +122,27 @@ Result<ByteSpan> decode_chunk(const fb::ChunkEntry& entry, ByteSpan stored,
   }
   const ByteSpan chunk{out, entry.decoded_size()};
   if (const Result<void> sound = check_chunk(chunk, entry); !sound) {
+    if (excess_of(sound.error())) return sound.error();
     return {sound.error().code, at};
   }
   return chunk;
+}
+
+std::string index_fault_text(const Error& error) {
+  if (const auto excess = excess_of(error)) return to_string(*excess);
+  const std::string detail = std::to_string(error.detail);
+  switch (error.code) {
+    case ErrorCode::kTooLarge:
+      return "its index takes " + detail + " bytes, more than its chunks need";
+    case ErrorCode::kBadValue:
+      return "zone in its index is not what a zone may be called";
+    case ErrorCode::kMismatch:
+      return "slots of " + detail + " bytes, this format has " + std::to_string(kSlotBytes);
+    case ErrorCode::kBadStructure:
+      return "the index breaks the rules of the format at byte " + detail;
+    default:
+      return std::string(to_string(error.code)) + " (" + detail + ")";
+  }
 }
 
 std::uint64_t Placement::room() const noexcept {

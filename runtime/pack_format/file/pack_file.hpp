@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "platform/base/result.hpp"
 #include "runtime/pack_format/chunk_view.hpp"
@@ -45,11 +46,22 @@ Digest32 pack_digest(const PackHeader& header, ByteSpan index, const PackTail& t
 // Reads and checks the tail of a pack of `file_size` bytes: magic, version, places inside the file.
 Result<PackTail> check_tail(ByteSpan last_64_bytes, std::uint64_t file_size) noexcept;
 
-// Checks header, index and tail of a pack: digest, FlatBuffers structure, and that the chunks'
-// stored bytes follow each other without gap or overlap from the header to the index. `index` must
-// be aligned to 8. On success the returned index points into `index`.
+// The longest index of a pack with so many chunks, in bytes: what is charged for it.
+inline constexpr ByteCount kIndexBytesPerPack = 512;
+constexpr ByteCount most_index_bytes(std::uint64_t chunks) noexcept {
+  return kIndexBytesPerPack + chunks * sizeof(fb::ChunkEntry);
+}
+
+// Checks header, index and tail of a pack: limits (kTooLarge, see over_limit), digest, FlatBuffers
+// structure, and that the chunks' stored bytes follow each other without gap or overlap from the
+// header to the index. `index` must be aligned to 8. On success the returned index points into
+// `index`.
 Result<const fb::PackIndex*> check_index(ByteSpan header_16_bytes, ByteSpan index,
                                          const PackTail& tail) noexcept;
+
+// What check_tail() or check_index() found wrong with an index, for people; says neither the file
+// nor what to do.
+std::string index_fault_text(const Error& error);
 
 // Checks the stored bytes of a chunk (length, XXH3) and decodes them to exactly
 // entry.decoded_size() bytes at `out`, which must be aligned to 16 and have kSlotBytes of room;

@@ -5,6 +5,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "tests/system/build/packer_program.hpp"
 
 namespace zonepack::system_test {
@@ -31,7 +33,6 @@ TEST(BuildUsage, ExitsWith2AndNamesTheOption) {
       {"build --db map.db --zones zones.geojson --out map --snap -1", "--snap"},
       {"build --db map.db --zones zones.geojson --out map --max-zone-bytes 3Mb", "3Mb"},
       {"build --db map.db --zones zones.geojson --out map --colour red", "--colour"},
-      {"export map", "--jsonl"},
       {"plan map --budget many", "many"},
       {"plan", "DIR"},
       {"pack", "pack"},
@@ -143,7 +144,68 @@ TEST(MapErrors, NameWhatIsMissing) {
   packer.build_summary();
   const Outcome zone = packer.zonepack("export map --zone attic --jsonl");
   EXPECT_EQ(zone.exit_code, 1);
-  EXPECT_THAT(zone.output, HasSubstr("no zone 'attic' in this map; it has east, west"));
+  EXPECT_THAT(zone.output, HasSubstr("no zone 'attic' in this map; it has east, west\n"));
+  EXPECT_THAT(packer.zonepack("plan map --pin weast").output,
+              HasSubstr("it has east, west; did you mean 'east'?"));
+}
+
+// One line, so that a long run does not come first.
+TEST(OutputPaths, AreRefusedBeforeAnythingIsRead) {
+  const Packer packer;  // without map.db: reading it would be the first error
+  packer.write("file", "");
+  for (const char* arguments :
+       {"build --db map.db --zones zones.geojson --out file/map",
+        "build --db map.db --zones zones.geojson --out map --json none/summary.json",
+        "check-zones nowhere.geojson --out none/preview.svg", "outline --db map.db --out file",
+        "report nowhere --out none/map.html", "export nowhere --out none/map.jsonl",
+        "export nowhere --out .", "plan nowhere --json none/plan.json",
+        "verify nowhere --json none/verdict.json", "prune nowhere --json none/prune.json"}) {
+    const Outcome outcome = packer.zonepack(arguments);
+    EXPECT_EQ(outcome.exit_code, 1) << arguments;
+    EXPECT_THAT(outcome.output, ::testing::ContainsRegex("cannot (be written|create the folder)"))
+        << arguments;
+    EXPECT_EQ(std::ranges::count(outcome.output, '\n'), 1) << outcome.output;
+  }
+  EXPECT_FALSE(std::filesystem::exists(packer.path("map")));
+}
+
+TEST(Options, MayStandBeforeTheSubcommand) {
+  const Packer packer;
+  packer.write_database(four_signatures());
+  EXPECT_EQ(packer.zonepack("--db map.db --zones=zones.geojson --out map build").exit_code, 0);
+  // The value of an option names no subcommand.
+  EXPECT_EQ(packer.zonepack("--json plan plan map").exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(packer.path("plan")));
+  EXPECT_THAT(packer.zonepack("--dry-run prune map").output, HasSubstr("0 files"));
+  EXPECT_EQ(packer.zonepack("plan --version").exit_code, 0);
+}
+
+TEST(Inspect, TakesSeveralPathsAndKeepsTheJsonOfOne) {
+  const Packer packer;
+  packer.write_database(four_signatures());
+  packer.build_summary();
+  const Outcome both = packer.zonepack("inspect map map/*.zpk --json all.json");
+  EXPECT_EQ(both.exit_code, 0) << both.output;
+  const auto all = nlohmann::json::parse(bytes_of_file(packer.path("all.json")));
+  ASSERT_EQ(all.size(), 3u);  // the map, east and west
+  EXPECT_EQ(all[1]["zone"], "east");
+  packer.zonepack("inspect map --json one.json");
+  EXPECT_EQ(nlohmann::json::parse(bytes_of_file(packer.path("one.json"))), all[0]);
+}
+
+TEST(Build, SaysWhatPruneWouldRemove) {
+  const Packer packer;
+  packer.write_database(four_signatures());
+  EXPECT_EQ(packer.build_summary()["prunable_files"], 0);
+  const Outcome again = packer.build("--payload features --json summary.json");
+  EXPECT_THAT(again.output, HasSubstr("zonepack prune map\n"));
+  const auto summary = nlohmann::json::parse(bytes_of_file(packer.path("summary.json")));
+  const std::size_t files = summary["prunable_files"];
+  EXPECT_GT(files, 0u);
+  const Outcome pruned = packer.zonepack("prune map --json pruned.json");
+  const auto json = nlohmann::json::parse(bytes_of_file(packer.path("pruned.json")));
+  EXPECT_EQ(json["files"].size(), files);
+  EXPECT_EQ(json["bytes"], summary["prunable_bytes"]);
 }
 
 TEST(Plan, ExitsWith1BelowTheSmallestBudget) {
@@ -153,7 +215,7 @@ TEST(Plan, ExitsWith1BelowTheSmallestBudget) {
   EXPECT_EQ(packer.zonepack("plan map --budget " + std::to_string(smallest)).exit_code, 0);
   const Outcome below = packer.zonepack("plan map --budget " + std::to_string(smallest - 1));
   EXPECT_EQ(below.exit_code, 1);
-  EXPECT_THAT(below.output, HasSubstr("BELOW THE SMALLEST by 1 bytes"));
+  EXPECT_THAT(below.output, HasSubstr("BELOW THE SMALLEST by 1 byte:"));
 }
 
 }  // namespace

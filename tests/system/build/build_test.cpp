@@ -142,7 +142,7 @@ TEST(Build, TreatsSignaturesWithoutAnOptimisedPoseAsAsked) {
   packer.write_database(fixture);
   const Outcome odometry = packer.build();
   EXPECT_EQ(odometry.exit_code, 0);
-  EXPECT_THAT(odometry.output, HasSubstr("WARNING: 1 signatures have no optimised pose"));
+  EXPECT_THAT(odometry.output, HasSubstr("WARNING: 1 signature has no optimised pose"));
   EXPECT_EQ(packer.exported().size(), 4u);
   const json drop = packer.build_summary("--unlinked drop");
   EXPECT_EQ(drop["signatures"], 3);

@@ -94,6 +94,18 @@ row() {  # NAME
     "$(mib "$(of "$watched" .share.most)")" "$(of "$watched" .share.samples)"
 }
 
+# What a run has beside its budget, in MiB: resident parts, and what the kernel charges that is not resident (files
+# that are read, page tables, descriptors). Libraries that other programs use too may be charged to them.
+breakdown() {  # NAME
+  jq -r --argjson budget "$budget" --argjson charged "$(cat "$work/$1/peak")" '
+    def mib: . / 1048576 * 100 | round / 100;
+    .parts as $p |
+    "parts, MiB: slots \($p.slots | mib) (budget \($budget | mib)), program \($p.program | mib), " +
+    "libraries \($p.libraries | mib), heap with queues and tables \($p.heap | mib), stacks \($p.stacks | mib), " +
+    "other with the ring for reading ahead \($p.other | mib); resident \([$p[]] | add | mib), charged \($charged | mib), " +
+    "above the budget \($charged - $budget | mib)"' "$work/$1/watch.json"
+}
+
 judge() {  # NAME LIMIT
   local run=$work/$1 code
   code=$(cat "$run/code")
@@ -133,6 +145,7 @@ for company in alone readers neighbour; do
   drop_caches
   drive "$company@$speed" $limit "$speed" 0 $company
   judge "$company@$speed" $limit
+  [ $company != alone ] || breakdown "$company@$speed"
 done
 if ((seconds > 0)); then  # side by side: only memory is judged, and it is each one's own
   drop_caches

@@ -2,7 +2,8 @@
 // usage: memory_watch PID: looks a thousand times a second at what a process has resident (statm)
 // and locked (status), and once a second at its share (smaps_rollup), until it ends. Prints one
 // JSON object; the least and most of each from half a second after memory was locked until a
-// quarter of a second before the end: outside of that it is being reserved or given back.
+// quarter of a second before the end: outside of that it is being reserved or given back. "parts"
+// says what was resident at the first of these looks (smaps).
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include <charconv>
 #include <cstdint>
 #include <cstdio>
+#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -68,6 +70,64 @@ struct Range {
   }
 };
 
+// Resident bytes by what they are for.
+struct Parts {
+  std::uint64_t slots = 0, program = 0, libraries = 0, heap = 0, stacks = 0, other = 0;
+
+  static Parts of(const std::string& process) {
+    Parts parts;
+    std::ifstream file("/proc/" + process + "/smaps");
+    const std::string program = program_of(process);
+    std::uint64_t* part = &parts.other;
+    bool after_guard = false;  // as the stack of a thread lies
+    for (std::string line; std::getline(file, line);) {
+      if (line.starts_with("Rss:")) *part += number_at(line, 4) * 1024;
+      // A mapping begins: "55d0c0000000-55d0c0021000 rw-p 00000000 00:00 0   [heap]".
+      const std::size_t blank = line.find(' ');
+      if (blank == std::string::npos || line.substr(0, blank).find('-') == std::string::npos) {
+        continue;
+      }
+      const std::string access = line.substr(blank + 1, 4);
+      const std::size_t at = line.find_first_of("/[", blank);
+      const std::string name = at == std::string::npos ? "" : line.substr(at);
+      if (access == "---p") {
+        part = &parts.other;
+      } else if (name.starts_with("/memfd:zonepack") || name.starts_with("/memfd:zoned")) {
+        part = &parts.slots;
+      } else if (name == program) {
+        part = &parts.program;
+      } else if (name.find(".so") != std::string::npos) {
+        part = &parts.libraries;
+      } else if (name == "[heap]") {
+        part = &parts.heap;
+      } else if (name == "[stack]" || (name.empty() && after_guard)) {
+        part = &parts.stacks;
+      } else {
+        part = &parts.other;
+      }
+      after_guard = access == "---p" && name.empty();
+    }
+    return parts;
+  }
+
+  void print() const {
+    std::printf(
+        "\"parts\": {\"slots\": %llu, \"program\": %llu, \"libraries\": %llu, "
+        "\"heap\": %llu, \"stacks\": %llu, \"other\": %llu}",
+        static_cast<unsigned long long>(slots), static_cast<unsigned long long>(program),
+        static_cast<unsigned long long>(libraries), static_cast<unsigned long long>(heap),
+        static_cast<unsigned long long>(stacks), static_cast<unsigned long long>(other));
+  }
+
+ private:
+  static std::string program_of(const std::string& process) {
+    std::array<char, 4096> path{};
+    const ssize_t size =
+        readlink(("/proc/" + process + "/exe").c_str(), path.data(), path.size() - 1);
+    return {path.data(), size > 0 ? static_cast<std::size_t>(size) : 0};
+  }
+};
+
 struct Look {
   std::uint64_t resident = 0, locked = 0, share = 0;
 };
@@ -78,7 +138,8 @@ int main(int argc, char** argv) {
   if (argc != 2) return std::fprintf(stderr, "usage: memory_watch PID\n"), 2;
   constexpr std::int64_t kPeriod_ns = 1'000'000, kSettle_ns = 500'000'000;
   const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-  ProcFile statm(argv[1], "statm"), status(argv[1], "status"), smaps(argv[1], "smaps_rollup");
+  ProcFile statm(argv[1], "statm"), status(argv[1], "status");
+  Parts parts;
   Range resident, locked, share;
   std::uint64_t most_ever = 0;
   std::array<Look, 256> looks{};  // the newest, not yet counted
@@ -93,7 +154,10 @@ int main(int argc, char** argv) {
     const std::int64_t now_ns = monotonic_ns();
     if (held > 0 && locked_since_ns == 0) locked_since_ns = now_ns;
     if (held > 0 && now_ns - locked_since_ns > kSettle_ns) {
-      if (first_ns == 0) first_ns = now_ns;
+      if (first_ns == 0) {
+        first_ns = now_ns;
+        parts = Parts::of(argv[1]);
+      }
       last_ns = now_ns;
       Look& look = looks[turn % looks.size()];
       if (look.locked > 0) {
@@ -102,7 +166,10 @@ int main(int argc, char** argv) {
         if (look.share > 0) share.add(look.share);
       }
       look = {pages * page, held, 0};
-      if (turn % 1000 == 0) look.share = kib_after(smaps.read(), "\nPss:");
+      // Opened each time: this file is of the memory before exec() when it was opened before.
+      if (turn % 1000 == 0) {
+        look.share = kib_after(ProcFile(argv[1], "smaps_rollup").read(), "\nPss:");
+      }
     }
     next_ns = std::max(next_ns + kPeriod_ns, monotonic_ns() - kPeriod_ns);
     zonepack::sleep_until_ns(next_ns);
@@ -115,6 +182,8 @@ int main(int argc, char** argv) {
   locked.print("locked");
   std::printf(", ");
   share.print("share");
+  std::printf(", ");
+  parts.print();
   std::printf("}\n");
   return 0;
 }

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 
 #include "tests/support/temporary_folder.hpp"
@@ -88,6 +89,34 @@ TEST_F(Board, FindsNothingWrongWithWhatIsUnknown) {
                            "compaction of locked pages", "memory limit of the cgroup"}) {
     EXPECT_TRUE(fact(name).good) << name;
   }
+}
+
+class MachineMemory : public testing::Test {
+ protected:
+  void write(const std::string& path, const std::string& text) {
+    const std::filesystem::path file = root_.path() / path;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+  }
+  ByteCount bytes() const { return machine_memory_bytes(root_.path().string()); }
+  test_support::TemporaryFolder root_;
+};
+
+TEST_F(MachineMemory, IsWhatTheKernelHasUnlessTheContainerHasLess) {
+  write("proc/meminfo", "MemFree:  1 kB\nMemTotal:        2000 kB\nSwapTotal: 9 kB\n");
+  EXPECT_EQ(bytes(), 2'048'000u);  // 2000 * 1024
+  write("sys/fs/cgroup/memory.max", "max\n");
+  EXPECT_EQ(bytes(), 2'048'000u);
+  write("sys/fs/cgroup/memory.max", "1000000\n");
+  EXPECT_EQ(bytes(), 1'000'000u);
+  write("sys/fs/cgroup/memory.max", "3000000\n");
+  EXPECT_EQ(bytes(), 2'048'000u);
+}
+
+TEST_F(MachineMemory, IsWithoutLimitWhereNothingIsKnown) {
+  EXPECT_EQ(bytes(), std::numeric_limits<ByteCount>::max());
+  write("proc/meminfo", "MemTotal: many kB\n");
+  EXPECT_EQ(bytes(), std::numeric_limits<ByteCount>::max());
 }
 
 }  // namespace

@@ -108,6 +108,55 @@ TEST(CheckZones, ReportsEveryFaultWithItsLineAndReturnsOne) {
   EXPECT_GT(json["faults"][0]["line"], 50);
 }
 
+TEST(CheckZones, NamesFaultsLastAndDrawsThemOverTheGrid) {
+  const test_support::TemporaryFolder folder;
+  ordered_json zones = hospital();
+  std::swap(zones["features"][1]["geometry"]["coordinates"][0][1],
+            zones["features"][1]["geometry"]["coordinates"][0][2]);  // L2 crosses itself
+  std::ostringstream text;
+  ordered_json json;
+  const std::string path = written(folder, zones), out = folder / "preview.html";
+  EXPECT_EQ(check_zones({path, kDatabase, 0.1, out}, text, json), 1);
+  const std::string lines = text.str();
+  EXPECT_LT(lines.find("R52"), lines.find("fault: "));
+  EXPECT_LT(lines.find(" in none"), lines.find("fault: "));
+  EXPECT_EQ(json["picture"], out);
+  EXPECT_NEAR(json["faults"][0]["at"][0], 3.6, 1e-9);  // as the message says
+  EXPECT_NEAR(json["faults"][0]["at"][1], 14.4, 1e-9);
+  std::ostringstream page;
+  page << std::ifstream(out).rdbuf();
+  const auto holds = [&](const char* words) { return page.str().find(words) != std::string::npos; };
+  EXPECT_TRUE(holds("href=\"data:image/png;base64,"));
+  EXPECT_TRUE(holds(">signature in no zone<"));
+  EXPECT_TRUE(holds("<td>zone &#39;L2&#39; (feature 1) crosses itself"));
+}
+
+TEST(CheckZones, RecognisesSwappedAxes) {
+  const test_support::TemporaryFolder folder;
+  ordered_json zones = hospital();
+  for (auto& feature : zones["features"]) {
+    auto& coordinates = feature["geometry"]["coordinates"];
+    for (auto& point : feature["geometry"]["type"] == "Polygon" ? coordinates[0] : coordinates) {
+      std::swap(point[0], point[1]);
+    }
+  }
+  std::ostringstream text;
+  ordered_json json;
+  check_zones({written(folder, zones), kDatabase, 0.1}, text, json);
+  EXPECT_THAT(text.str(), HasSubstr(" of 185 in no zone; with x and y swapped 0"));
+  EXPECT_EQ(json["signatures"]["read_otherwise"]["how"], "x and y swapped");
+}
+
+TEST(CheckZones, ListsZonesInNaturalOrder) {
+  const test_support::TemporaryFolder folder;
+  ordered_json zones = hospital();
+  zones["features"][0]["properties"]["name"] = "L10";
+  std::ostringstream text;
+  ordered_json json;
+  check_zones({written(folder, zones), std::nullopt, 0.1}, text, json);
+  EXPECT_LT(text.str().find("\nL2 "), text.str().find("\nL10 "));
+}
+
 TEST(CheckZones, ReportsAFileThatIsNoJson) {
   const test_support::TemporaryFolder folder;
   const std::string path = folder / "zones.geojson";

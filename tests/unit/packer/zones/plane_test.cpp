@@ -158,5 +158,27 @@ TEST(SharedBorder, LeavesOutPiecesThatAreTooShortAndEdgesThatRunTheSameWay) {
   EXPECT_TRUE(shared_borders(kUnitSquare, kUnitSquare, 0.1, 0.1)->empty());
 }
 
+TEST(CommonRegion, CoversTheCommonArea) {
+  // A square of 4 m and a triangle with the corners (2, 1), (8, 1), (2, 7): its slope passes x = 4
+  // at y = 5, above the square. Common: x 2 to 4, y 1 to 4, 6 m2.
+  const Polygon square{{{0, 0}, {4, 0}, {4, 4}, {0, 4}}, {}};
+  const Polygon triangle{{{2, 1}, {8, 1}, {2, 7}}, {}};
+  MeasuringSteps steps(1000);
+  double area = 0;
+  for (const Ring& piece : common_region(square, triangle, steps)) area += area_m2({piece, {}});
+  EXPECT_NEAR(area, 6, 1e-4);
+}
+
+TEST(CommonRegion, FollowsSlopes) {
+  // The triangle (0, 0), (4, 0), (0, 4) in a square of 4 m: all of it, 8 m2.
+  const Polygon square{{{0, 0}, {4, 0}, {4, 4}, {0, 4}}, {}};
+  const Polygon triangle{{{0, 0}, {4, 0}, {0, 4}}, {}};
+  MeasuringSteps steps(1000);
+  double area = 0;
+  for (const Ring& piece : common_region(square, triangle, steps)) area += area_m2({piece, {}});
+  EXPECT_NEAR(area, 8, 1e-4);
+  EXPECT_TRUE(common_region(square, {{{9, 9}, {10, 9}, {9, 10}}, {}}, steps).empty());
+}
+
 }  // namespace
 }  // namespace zonepack::packer

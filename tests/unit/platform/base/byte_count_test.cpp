@@ -65,5 +65,13 @@ TEST(ByteCount, PrintsTheShortestExactForm) {
   EXPECT_EQ(format_byte_count(3 * kGiB), "3GiB");
 }
 
+TEST(ByteCount, RoundsForTables) {
+  EXPECT_EQ(short_bytes(0), "0 B");
+  EXPECT_EQ(short_bytes(1023), "1023 B");
+  EXPECT_EQ(short_bytes(20'480), "20 KiB");
+  EXPECT_EQ(short_bytes(1'048'575), "1.00 MiB");  // never "1024 KiB"
+  EXPECT_EQ(short_bytes(1'572'864), "1.50 MiB");
+}
+
 }  // namespace
 }  // namespace zonepack

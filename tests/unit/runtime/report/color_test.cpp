@@ -46,6 +46,42 @@ TEST(Color, TextReadsOnEveryFill) {
   EXPECT_GE(contrast(kQuiet, kWhite), 4.5);
 }
 
+TEST(Color, ADarkPageReadsAsWellAsALightOne) {
+  const Color page = dark_twin(kWhite);
+  EXPECT_LT(luminance(page), 0.02);
+  // WCAG 2.1: 4.5 for text, 3 for the lines of a drawing.
+  for (const Color text : {kInk, kQuiet, kLimit, kOurs}) {
+    EXPECT_GE(contrast(dark_twin(text), page), 4.5) << to_hex(text);
+  }
+  for (const Color line : {kWall, kOursToo, kOther, kOtherToo, kDoor}) {
+    EXPECT_GE(contrast(dark_twin(line), page), 3.0) << to_hex(line);
+  }
+  for (std::size_t i = 0; i < kHueCount; ++i) {
+    EXPECT_GE(contrast(dark_twin(hue(i)), page), 3.0) << i;
+    // Text on a block of colour is dark there.
+    EXPECT_GE(contrast(page, dark_twin(hue(i))), 4.5) << i;
+    // A zone's tint is a ground for text and lines.
+    EXPECT_GE(contrast(dark_twin(kInk), dark_twin(mix(kWhite, hue(i), 0.2))), 7.0) << i;
+  }
+}
+
+TEST(Color, OnADarkPageTheRampBrightensAllTheWay) {
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_LT(luminance(dark_twin(ramp_color(i / 20.0))),
+              luminance(dark_twin(ramp_color((i + 1) / 20.0))))
+        << i;
+    EXPECT_GE(contrast(dark_twin(kInk), dark_twin(ramp_color(i / 20.0))), 3.0) << i;
+  }
+}
+
+TEST(Color, ADarkTwinKeepsItsHue) {
+  // Grey stays grey; blue stays bluer than it is red.
+  const Color grey = dark_twin({0x80, 0x80, 0x80}), blue = dark_twin(kOurs);
+  EXPECT_LE(std::abs(grey.r - grey.b), 1);
+  EXPECT_LE(std::abs(grey.r - grey.g), 1);
+  EXPECT_GT(blue.b, blue.r + 60);
+}
+
 TEST(Color, HuesAreDifferent) {
   for (std::size_t i = 0; i < kHueCount; ++i) {
     for (std::size_t k = 0; k < i; ++k) EXPECT_NE(hue(i), hue(k));

@@ -52,9 +52,9 @@ TEST(PackReport, ColoursZonesByWhatTheyCharge) {
   const std::string html = to_html(make_pack_report(two_zones()));
   EXPECT_EQ(XmlCheck::problem_in(html), "");
   // L1 charges most, H1 half of it. Halos of labels repeat the fill.
-  EXPECT_EQ(count_of(html, "Z\" fill=\"" + to_hex(ramp_color(1)) + "\""), 1u);
-  EXPECT_EQ(count_of(html, "Z\" fill=\"" + to_hex(ramp_color(0.5)) + "\""), 1u);
-  EXPECT_EQ(count_of(html, "<circle"), 4u);  // three signatures and the legend's dot
+  EXPECT_EQ(count_of(html, "Z\" fill=\"" + to_hex(ramp_color(1)) + "\""), 2u);  // wide and narrow
+  EXPECT_EQ(count_of(html, "Z\" fill=\"" + to_hex(ramp_color(0.5)) + "\""), 2u);
+  EXPECT_EQ(count_of(html, "<circle"), 8u);  // twice: three signatures and the legend's dot
 }
 
 TEST(PackReport, ListsEveryZone) {

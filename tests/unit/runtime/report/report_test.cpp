@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "runtime/report/chart.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/xml_check.hpp"
 
@@ -56,11 +57,48 @@ TEST(Report, AsAPageIsWellFormedAndHoldsEverything) {
 
 TEST(Report, AsAPageNeedsNothingFromOutside) {
   const std::string html = to_html(sample());
-  for (const char* part : {"<script", "src=", "href=", "url(", "@import"}) {
+  for (const char* part :
+       {"<script src", " src=", "href=", "url(", "@import", "fetch(", "import("}) {
     EXPECT_EQ(count_of(html, part), 0u) << part;
   }
-  // The namespace of SVG is a name, not a resource.
-  EXPECT_EQ(count_of(html, "http"), count_of(html, "xmlns=\"http://www.w3.org/2000/svg\""));
+  // The namespace of SVG is a name, not a resource; the policy forbids what would be one.
+  EXPECT_EQ(count_of(html, "http://"), count_of(html, "http://www.w3.org/2000/svg"));
+  EXPECT_EQ(count_of(html, "https://"), 0u);
+  EXPECT_EQ(count_of(html, "default-src 'none'"), 1u);
+}
+
+TEST(Report, AsAPageHasANarrowDrawingForPhonesAndOneForPrint) {
+  Report report = sample();
+  Svg narrow(340, 100);
+  narrow.text({10, 20}, "drawn small", {});
+  report.figures[0].narrow = narrow;
+  const std::string html = to_html(report);
+  EXPECT_EQ(XmlCheck::problem_in(html), "");
+  EXPECT_EQ(count_of(html, "<div class=\"drawing wide\" role=\"img\" aria-label=\"Plan\">"), 1u);
+  EXPECT_EQ(count_of(html, "<div class=\"drawing narrow\" role=\"img\" aria-label=\"Plan\">"), 1u);
+  EXPECT_EQ(count_of(to_sheet(report).file_text(), "drawn small"), 0u);
+}
+
+TEST(Report, AsAPageGivesEveryColourATwinForTheDark) {
+  const std::string html = to_html(sample());
+  // The one text of the drawing is ink.
+  EXPECT_EQ(count_of(html, ":root{--c1f242b:#1f242b;}"), 1u);
+  EXPECT_EQ(count_of(html, "--c1f242b:" + to_hex(dark_twin(kInk)) + ";"), 2u);
+  EXPECT_EQ(count_of(html, "svg [fill=\"#1f242b\"]:not(.on){fill:var(--c1f242b)}"), 1u);
+}
+
+TEST(Report, NoNameEndsTheScriptsData) {
+  Report report = sample();
+  Chart chart;
+  chart.series.emplace_back().name = "</script><script>alert('1')</script>";
+  report.figures[0].data = chart_json(chart);
+  report.playback.emplace();
+  report.playback->events = {{1, "<!--<script>&\"\\\xff", 0}};
+  const std::string html = to_html(report);
+  EXPECT_EQ(XmlCheck::problem_in(html), "");
+  EXPECT_EQ(count_of(html, "<script"), 2u);  // the data and the page's own
+  EXPECT_EQ(count_of(html, "alert('1')\\u003c/script\\u003e"), 1u);
+  EXPECT_EQ(count_of(html, "\"\\u003c!--\\u003cscript\\u003e\\u0026\\\"\\\\\xEF\xBF\xBD\""), 1u);
 }
 
 TEST(Report, AsASheetHoldsEverything) {

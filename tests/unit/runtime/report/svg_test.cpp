@@ -31,10 +31,32 @@ Svg everything() {
 
 TEST(XmlCheck, FindsWhatIsWrong) {
   EXPECT_EQ(XmlCheck::problem_in("<a b=\"c\"><d/>&amp;</a>"), "");
-  for (const char* text :
-       {"", "<a>", "<a></b>", "<a b=c/>", "<a>&</a>", "<a/><b/>", "<a b=\"1\" b=\"2\"/>"}) {
+  EXPECT_EQ(XmlCheck::problem_in("<a><script>1 < 2 && f()</script></a>"), "");
+  for (const char* text : {"", "<a>", "<a></b>", "<a b=c/>", "<a>&</a>", "<a/><b/>",
+                           "<a b=\"1\" b=\"2\"/>", "<script>1 < 2</a>", "<script><!-- </script>"}) {
     EXPECT_NE(XmlCheck::problem_in(text), "") << text;
   }
+}
+
+TEST(Svg, CarriesDataForAScriptOnAPageOnly) {
+  Svg svg(10, 10);
+  svg.set_data("plot", "1 2 \"3\"");
+  const std::vector<std::vector<Px>> ring = {{{0, 0}, {9, 0}, {9, 9}}};
+  svg.polygon(ring, {.fill = kWhite, .zone = 7});
+  EXPECT_EQ(XmlCheck::problem_in(svg.inline_text()), "");
+  EXPECT_EQ(count_of(svg.inline_text(), " data-plot=\"1 2 &quot;3&quot;\""), 1u);
+  EXPECT_EQ(count_of(svg.inline_text(), " data-zone=\"7\""), 1u);
+  EXPECT_EQ(count_of(svg.file_text(), "data-plot"), 0u);
+}
+
+TEST(Svg, KnowsItsColoursButThoseOnBlocks) {
+  Svg inner(5, 5), svg(10, 10);
+  inner.line({0, 0}, {1, 1}, {.stroke = kDoor});
+  svg.place(inner, {0, 0});
+  svg.rect({0, 0}, 1, 1, {.fill = kOurs});
+  svg.text({1, 1}, "x", {.color = kInk, .halo = kWhite});
+  svg.text({1, 1}, "y", {.color = kLimit, .on_color = true});
+  EXPECT_EQ(svg.colors(), (std::set<Color>{kDoor, kOurs, kInk, kWhite}));
 }
 
 TEST(Svg, IsWellFormed) {

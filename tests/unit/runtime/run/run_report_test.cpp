@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "runtime/run/run_figures.hpp"
+#include "runtime/run/run_statistics.hpp"
 #include "tests/support/xml_check.hpp"
 
 namespace zonepack {
@@ -138,9 +139,9 @@ TEST(RunReport, PutsTheBaselineBesideOurs) {
   const std::vector<BaselineRow> rows = {{0, 184, 0, 1}, {30, 95, 981, 1071}};
   const std::string html = to_html(make_run_report({"map", "can0.log", s, trace, rows}));
   EXPECT_GE(count_of(html, ">RTAB-Map loaded</text>"), 1u);
-  EXPECT_EQ(count_of(html, ">Zonepack loaded</text>"), 1u);
+  EXPECT_EQ(count_of(html, ">Zonepack loaded</text>"), 2u);  // wide and narrow
   EXPECT_EQ(count_of(html, ">981, 1071<"), 1u);
-  EXPECT_EQ(count_of(html, ">1071</text>"), 1u);
+  EXPECT_EQ(count_of(html, ">1071</text>"), 2u);
 }
 
 TEST(RunReport, SaysLoudlyThatALimitWasExceeded) {
@@ -166,6 +167,58 @@ TEST(RunReport, OfARunWithoutSamplesIsStillAPage) {
       make_run_report({"map", "can0.log", RunSummary{}, RunTrace{}, kNoBaseline});
   EXPECT_EQ(XmlCheck::problem_in(to_html(page)), "");
   EXPECT_EQ(to_html(page).find("nan"), std::string::npos);
+}
+
+TEST(RunReport, IsPlayedWithPosesStaysHoldsAndEvents) {
+  RunTrace trace = three_rooms();
+  trace.samples[5].tracked_zone = kNoZone;
+  trace.holds = {{0, 0, 1, 20}, {2, 18, 22, 30}};
+  trace.events = {{18, "load_started", 2}, {22.5, "correction_rejected", kNoZone}};
+  const report::Report page = make_run_report({"map", "can0.log", summary(), trace, kNoBaseline});
+  ASSERT_TRUE(page.playback);
+  // The first pose is unknown. From t = 1 s on the robot moves 1 m a second along y = 2.5, so two
+  // ends say it all: 1.3 m to 29.3 m.
+  const std::string json = report::playback_json(*page.playback);
+  for (const char* part :
+       {"{\"duration\":30000,", "\"t\":[0,1000,28000],\"x\":[null,1300,28000],\"y\":[null,2500,0]",
+        "\"holds\":[0,0,1000,20000,2,18000,4000,12000]",
+        // A from 0 to 5 s and from 6 to 10 s, B to 20 s, C to the end.
+        "\"stays\":[0,0,5000,0,6000,4000,1,10000,10000,2,20000,10000]",
+        "\"kinds\":[\"load_started\",\"correction_rejected\"],\"t\":[18000,4500],\"k\":[0,1],"
+        "\"z\":[2,-1]"}) {
+    EXPECT_EQ(count_of(json, part), 1u) << part << " in " << json;
+  }
+}
+
+// The longest trace that is kept, in which everything changes all the time: a size that mail takes.
+TEST(RunReport, OfTheWorstRunHasABoundedSize) {
+  RunTrace trace = three_rooms();
+  trace.samples.clear();
+  for (int i = 0; i < static_cast<int>(RunStatistics::kMostSamples); ++i) {
+    TraceSample s;
+    s.t_s = i * 1.5;
+    s.pose_valid = true;
+    s.estimate = {15 + 14 * std::sin(i * 0.7), 2.5 + 2 * std::cos(i * 1.3), i * 2.0};
+    s.has_truth = true;
+    s.truth = {s.estimate.x_m + 0.1 * std::sin(i * 3.0), s.estimate.y_m, 0};
+    s.tracked_zone = static_cast<ZoneId>(i % 3);
+    s.zone_absent = i % 5 == 0;
+    s.blocked = i % 7 == 0;
+    s.charged_bytes = static_cast<ByteCount>(400 + i * 7919 % 5000);
+    s.charged_signatures = static_cast<std::uint64_t>(i % 50);
+    s.signatures_loaded = static_cast<std::uint64_t>(i * 10);
+    s.signatures_unloaded = static_cast<std::uint64_t>(i * 10 - i % 50);
+    trace.samples.push_back(s);
+  }
+  trace.duration_s = trace.samples.back().t_s;
+  for (int i = 0; i < static_cast<int>(HoldKeeper::kMost); ++i) {
+    trace.holds.push_back({static_cast<ZoneId>(i % 3), i * 4.5, i * 4.5 + 1, i * 4.5 + 3});
+    trace.events.push_back({i * 4.5, "load_started", static_cast<ZoneId>(i % 3)});
+  }
+  const std::string html =
+      to_html(make_run_report({"map", "can0.log", summary(), trace, kNoBaseline}));
+  RecordProperty("bytes", std::to_string(html.size()));
+  EXPECT_LT(html.size(), 5u * 1000 * 1000);
 }
 
 TEST(RunReport, ThePictureHoldsTheRouteAndTheCurves) {

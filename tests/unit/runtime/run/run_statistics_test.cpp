@@ -151,6 +151,17 @@ TEST_F(Statistics, KeepsEveryChangeAndTenSamplesASecondForDrawing) {
   EXPECT_EQ(trace.samples[5].resident_signatures, 10u);
 }
 
+TEST_F(Statistics, KeepsWhichZonesWereHeldForDrawing) {
+  statistics.keep_trace();
+  cycle(0);
+  hold(0, needs[0]);
+  cycle(0);
+  const RunTrace trace = statistics.take_trace();
+  ASSERT_EQ(trace.holds.size(), 1u);
+  EXPECT_EQ(trace.holds[0].zone, 0u);
+  EXPECT_DOUBLE_EQ(trace.holds[0].to_s, trace.samples.back().t_s);  // held to the end
+}
+
 // A month at ten changes a second and more: what is kept stays within its bounds, from the first
 // cycle to the last, and shows the trouble in between.
 TEST_F(Statistics, ThinsWhatItKeepsOfALongRun) {

@@ -108,6 +108,43 @@ TEST_F(Served, KnowsZonesByTheEventsOfTheRun) {
   EXPECT_EQ(client.status().zones_filling(), 1u);
 }
 
+TEST_F(Served, CountsWhatHappenedToEachZone) {
+  ASSERT_TRUE(run.open());
+  run.load(1);
+  run.happen(EventKind::kZoneEntered, 1);
+  run.happen(EventKind::kEvicted, 1);
+  const Serving serving(run);
+  Client client(run.settings.socket);
+  // Only b, of three zones; and nothing from behind it.
+  const auto& reply = client.ask([](auto& b) { return wire::CreateAskZones(b, 0, true); });
+  const auto& zones = *reply.body_as_Zones()->zones();
+  ASSERT_EQ(zones.size(), 1u);
+  EXPECT_EQ(zones.Get(0)->zone(), 1u);
+  EXPECT_EQ(zones.Get(0)->loads_total(), 1u);
+  EXPECT_EQ(zones.Get(0)->evictions_total(), 1u);
+  EXPECT_EQ(zones.Get(0)->entered_total(), 1u);
+  const auto& none = client.ask([](auto& b) { return wire::CreateAskZones(b, 2, true); });
+  EXPECT_EQ(none.body_as_Zones()->zones()->size(), 0u);
+}
+
+TEST_F(Served, GivesTheOutlinesOfZonesWithNoMorePointsThanFit) {
+  run.catalog.zones[0].polygon.outer = {{0, 0}, {4, 0}, {4, 2.5}};
+  for (int i = 0; i < 300; ++i) run.catalog.zones[2].polygon.outer.push_back({double(i), 0});
+  ASSERT_TRUE(run.open());
+  const Serving serving(run);
+  Client client(run.settings.socket);
+  const auto& reply = client.ask([](auto& b) { return wire::CreateAskOutlines(b, 0); });
+  const wire::Outlines& all = *reply.body_as_Outlines();
+  EXPECT_EQ(all.total(), 3u);
+  ASSERT_EQ(all.outlines()->size(), 3u);
+  ASSERT_EQ(all.outlines()->Get(0)->points()->size(), 3u);
+  EXPECT_EQ(all.outlines()->Get(0)->points()->Get(2)->y(), 2.5f);
+  EXPECT_EQ(all.outlines()->Get(1)->points()->size(), 0u);
+  // 300 points are over 128 and over 256: every third one.
+  EXPECT_EQ(all.outlines()->Get(2)->points()->size(), 100u);
+  EXPECT_EQ(all.outlines()->Get(2)->points()->Get(1)->x(), 3.0f);
+}
+
 TEST_F(Served, ReportsWhatChangedSinceAGivenPoint) {
   ASSERT_TRUE(run.open());
   run.load(0);
@@ -439,6 +476,11 @@ TEST_F(Served, OpeningSaysWhatPreventsIt) {
   settings.socket = run.folder / "t";
   settings.mode = "0x1";
   EXPECT_NE(fault_of(settings).find("expected octal digits"), std::string::npos);
+  settings.mode = "0660";
+  settings.group = "no such group";
+  EXPECT_NE(fault_of(settings).find("group \"no such group\": there is no such group"),
+            std::string::npos);
+  settings.group.clear();
   settings.socket = run.folder / "no/such/folder";
   settings.mode = "0660";
   EXPECT_NE(fault_of(settings).find("No such file or directory"), std::string::npos);

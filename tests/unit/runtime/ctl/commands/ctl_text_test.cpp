@@ -179,6 +179,18 @@ TEST_F(CtlText, TheViewFitsIntoAnyTerminal) {
     zones.push_back(zone);
   }
   view.set_zones(zones);
+  std::vector<FloorPlan::Outline> outlines;  // 20 by 15 rooms of 5 m
+  for (int i = 0; i < 300; ++i) {
+    const double x = i % 20 * 5.0, y = i / 20 * 5.0;
+    outlines.push_back({{x, y}, {x + 5, y}, {x + 5, y + 5}, {x, y + 5}});
+  }
+  view.set_plan({outlines, true});
+  flatbuffers::FlatBufferBuilder builder;
+  builder.Finish(wire::CreateEvent(builder, wire::EventKind::Evicted, 1, 5'000'000'000, 1,
+                                   builder.CreateString("corridor-7")));
+  for (int i = 0; i < 300; ++i) {
+    view.add_event(*flatbuffers::GetRoot<wire::Event>(builder.GetBufferPointer()));
+  }
   for (int i = 0; i < 700; ++i) view.add_status(status(), 0.2 * i);
   live.state.zone_resident = false;
   for (const int columns : {1, 10, 40, 80, 133, 300}) {
@@ -187,6 +199,35 @@ TEST_F(CtlText, TheViewFitsIntoAnyTerminal) {
       EXPECT_LE(static_cast<int>(lines.size()), rows) << columns;
       for (const std::string& line : lines) EXPECT_LE(columns_of(line), columns) << line;
     }
+  }
+}
+
+TEST_F(CtlText, TheViewFillsItsRowsWithThePlanAndTheLastEvents) {
+  WatchView view;
+  view.set_zones({{.name = "a"}, {.name = "b", .state = wire::ZoneState::Resident}, {.name = "c"}});
+  // Three rooms in a row, 10 m by 20 m; the robot is at (1.5, -2), which is in a.
+  view.set_plan({{{{0, -10}, {10, -10}, {10, 10}, {0, 10}},
+                  {{10, -10}, {20, -10}, {20, 10}, {10, 10}},
+                  {{20, -10}, {30, -10}, {30, 10}, {20, 10}}},
+                 true});
+  flatbuffers::FlatBufferBuilder builder;
+  builder.Finish(wire::CreateEvent(builder, wire::EventKind::Evicted, 1, 5'000'000'000, 1,
+                                   builder.CreateString("b")));
+  for (int i = 0; i < 30; ++i) {
+    view.add_event(*flatbuffers::GetRoot<wire::Event>(builder.GetBufferPointer()));
+  }
+  const auto count = [](const std::string& text, const std::string& word) {
+    std::size_t found = 0;
+    for (std::size_t at = 0; (at = text.find(word, at)) != text.npos; at += word.size()) ++found;
+    return found;
+  };
+  for (const int columns : {40, 133}) {
+    const std::string text = view.picture(status(), {columns, 30}, false);
+    EXPECT_EQ(lines_of(text).size(), 30u) << text;
+    EXPECT_GT(count(text, "▓"), 20u) << text;  // b, where the tracker has the robot
+    EXPECT_EQ(count(text, "↗"), 1u) << text;   // 1 rad
+    // Narrow: below the plan, five rows and what it does not need. Wide: in each row of the plan.
+    EXPECT_GE(count(text, "evicted b"), columns == 40 ? 5u : 20u) << text;
   }
 }
 

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packer/console/words.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+#include <string_view>
+
+#include "platform/base/file_kind.hpp"
+#include "platform/base/natural_order.hpp"
+
+namespace zonepack::packer {
+
+std::string plural(std::uint64_t count, const std::string& one, const std::string& many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
+}
+
+std::string mib_text(ByteCount bytes) {
+  constexpr double kLeast = 0.01;
+  const double mib = static_cast<double>(bytes) / static_cast<double>(kMiB);
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", bytes == 0 ? 0 : std::max(mib, kLeast));
+  return text;
+}
+
+std::string size_text(ByteCount bytes) {
+  const std::string text = plural(bytes, "byte");
+  return bytes < kMiB / 100 ? text : text + " (" + mib_text(bytes) + " MiB)";
+}
+
+std::string shell_word(const std::string& path) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789/._-+=:,@%";
+  const bool plain = !path.empty() && path.find_first_not_of(kPlain) == path.npos;
+  return plain ? path : shell_quoted(path);
+}
+
+std::vector<std::size_t> natural_order(const std::vector<std::string>& names) {
+  std::vector<std::size_t> order(names.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order,
+                    [&](std::size_t a, std::size_t b) { return natural_less(names[a], names[b]); });
+  return order;
+}
+
+}  // namespace zonepack::packer

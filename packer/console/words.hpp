@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "platform/base/byte_count.hpp"
+
+// Counts and sizes as the commands print them.
+namespace zonepack::packer {
+
+// "1 signature", "2 signatures"; `many` where an "s" is not enough.
+std::string plural(std::uint64_t count, const std::string& one, const std::string& many = "");
+
+// For columns and sentences: "0.17", in MiB, two decimals; what is smaller but not 0 as "0.01".
+std::string mib_text(ByteCount bytes);
+
+// "180224 bytes (0.17 MiB)"; below 0.01 MiB the bytes alone.
+std::string size_text(ByteCount bytes);
+
+// A path for a command to type: quoted only where a shell needs it.
+std::string shell_word(const std::string& path);
+
+// The indices of names in the order of natural_less().
+std::vector<std::size_t> natural_order(const std::vector<std::string>& names);
+
+}  // namespace zonepack::packer

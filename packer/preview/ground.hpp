@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "packer/decode/map_reader.hpp"
+#include "packer/outline/map_drawing.hpp"
+#include "runtime/report/floor_plan.hpp"
+
+// The occupancy grid that pictures of a map show below its zones.
+namespace zonepack::packer {
+
+// More cells than this are merged into larger ones, so that no picture grows past a few hundred
+// kilobytes; a merged cell is occupied where any of its cells is.
+inline constexpr std::size_t kMostRasterCells = 1'000'000;
+
+// The grid as a picture; nothing when it has no cells.
+std::optional<report::PlanRaster> raster_of(const MapImage& image,
+                                            std::size_t most_cells = kMostRasterCells);
+
+// What the local grids in a map's packs add up to, by their signatures' optimised poses. A pack
+// that cannot be read is left out, with a warning; without local grids the image has no cells.
+MapDrawing drawing_of(const MapReader& map);
+
+}  // namespace zonepack::packer

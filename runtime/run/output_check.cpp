@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/run/output_check.hpp"
+
+#include "platform/output_place.hpp"
+
+namespace zonepack {
+
+Outcome<void> check_outputs(std::initializer_list<OutputChoice> outputs) {
+  const char* taken_by = nullptr;
+  Failures failed;
+  for (const OutputChoice& output : outputs) {
+    if (output.path.empty()) continue;
+    if (output.path == "-" && output.may_be_standard_output) {
+      if (taken_by != nullptr) {
+        return usage_failure(std::string(taken_by) + " - and " + output.option +
+                             " -: standard output takes one of them; give the other a FILE");
+      }
+      taken_by = output.option;
+      continue;
+    }
+    const auto possible = check_output_place(output.path);
+    if (possible) continue;
+    const std::string name = std::string(output.option) + ": " + output.path;
+    if (possible.error().code == ErrorCode::kNotFound) {
+      const std::string folder = folder_of_path(output.path);
+      failed.add(failure(
+          name + ": cannot be written: there is no folder " + folder + "; mkdir -p " + folder,
+          ErrorCode::kNotFound));
+    } else {
+      failed.add(cannot_write(name, possible.error()));
+    }
+  }
+  return failed.all();
+}
+
+}  // namespace zonepack
