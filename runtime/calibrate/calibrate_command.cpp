@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/calibrate/calibrate_command.hpp"
 
-#include <array>
-#include <charconv>
+#include <algorithm>
 #include <iostream>
 
 #include "platform/atomic_file.hpp"
 #include "platform/can_log.hpp"
+#include "runtime/calibrate/number_text.hpp"
+#include "runtime/calibrate/wheel_hints.hpp"
+#include "runtime/calibrate/wheel_watch.hpp"
 #include "runtime/odometry/det_math.hpp"
 #include "runtime/run/log_faults.hpp"
 #include "runtime/run/log_match.hpp"
@@ -17,18 +19,6 @@ namespace zonepack {
 namespace {
 
 constexpr double kDegree = 180 / kPi;
-
-std::string decimals_text(double value, int decimals) {
-  std::array<char, 64> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
-                                 std::chars_format::fixed, decimals)
-                       .ptr;
-  return {text.data(), end};
-}
-
-bool has_sides(OdometryModel model) {
-  return model == OdometryModel::kDifferentialPositions || model == OdometryModel::kWheelSpeeds;
-}
 
 std::string padded(std::string text, std::size_t width) {
   if (text.size() < width) text.insert(0, width - text.size(), ' ');
@@ -64,7 +54,7 @@ std::string json_of(const char* name, const CalibrationErrors& errors) {
          ", \"heading_rad\": " + decimals_text(errors.heading_rad, 6) + "}";
 }
 
-std::string json_of(const Calibration& c) {
+std::string json_of(const Calibration& c, const std::vector<WheelHint>& hints) {
   return "{\n  \"distance_m\": " + decimals_text(c.distance_m, 3) +
          ",\n  \"turned_rad\": " + decimals_text(c.turned_rad, 3) +
          ",\n  \"seconds\": " + decimals_text(c.seconds, 3) +
@@ -77,7 +67,8 @@ std::string json_of(const Calibration& c) {
          ",\n  \"difference\": " + decimals_text(c.difference, 9) +
          ",\n  \"difference_sigma\": " + decimals_text(c.difference_sigma, 9) +
          ",\n  \"sides_differ\": " + (c.sides_differ ? "true" : "false") + ",\n" +
-         json_of("before", c.before) + ",\n" + json_of("after", c.after) + "\n}\n";
+         json_of("before", c.before) + ",\n" + json_of("after", c.after) +
+         ",\n  \"hints\": " + hints_json(hints) + "\n}\n";
 }
 
 Outcome<Settings> usable_settings(const std::string& config) {
@@ -97,20 +88,83 @@ Outcome<Settings> usable_settings(const std::string& config) {
   return std::move(loaded.settings);
 }
 
+// Whether the drive determines it, and the settings can hold it.
+bool can_be_pasted(const Calibration& c, const OdometrySettings& odometry) {
+  constexpr double kMostScale = 2;  // config/SETTINGS.md
+  constexpr double kMostSigma = 0.2;
+  const double mean = (c.fitted.left + c.fitted.right) / 2;
+  const double scale = odometry.scale * mean;
+  return c.fitted.left > 0 && c.fitted.right > 0 && c.fitted.track_m > 0 &&
+         c.scale_sigma < kMostSigma * mean && c.track_sigma_m < kMostSigma * c.fitted.track_m &&
+         (!is_length(odometry.unit) || (scale >= 1 / kMostScale && scale <= kMostScale));
+}
+
+std::string hint_texts(const std::vector<WheelHint>& hints) {
+  std::string text;
+  for (const WheelHint& hint : hints) text += hint_text(hint);
+  return text;
+}
+
+// `why`, and below it what is probably wrong with the settings.
+Failure not_calibrated(const std::string& why, const std::vector<WheelHint>& hints) {
+  std::string text = why + "\n" + hint_texts(hints);
+  text.pop_back();
+  return failure(text);
+}
+
+// The wheels' steps over the log; `watch` sees every frame.
+Outcome<std::vector<WheelStep>> read_steps(const Settings& settings, const std::string& can,
+                                           WheelWatch& watch) {
+  CanLogReader log(can, settings.can.interface);
+  if (const auto opened = log.open(); !opened) {
+    return failure(log.explain(opened.error()), opened.error().code);
+  }
+  const WheelOdometrySettings& wheels = settings.odometry.wheels;
+  std::vector<WheelStep> steps;
+  LogMatch frames(log);
+  while (const auto frame = frames.next()) {
+    if (const auto step = watch.take(*frame)) steps.push_back(*step);
+  }
+  tell_log_faults(can, log.summary());
+  if (steps.empty()) {
+    const std::string mismatch = frames.mismatch(wheels, can, log.summary());
+    if (!mismatch.empty()) return failure(mismatch);
+    const std::string why = rejected_text(watch.odometry().counters(), wheels);
+    return failure(can + ": holds fewer than two samples that odometry can use" +
+                   (why.empty() ? "" : "; refused: " + why));
+  }
+  return steps;
+}
+
 Outcome<void> calibrate_and_report(const CalibrateArguments& arguments) {
   const auto settings = usable_settings(arguments.config);
   if (!settings) return settings.error();
   const OdometrySettings& odometry = settings->odometry;
   const auto as_written = read_truth(arguments.truth);
   if (!as_written) return as_written.error();
-  const auto steps = read_wheel_steps(*settings, arguments.can);
-  if (!steps) return steps.error();
   const TruthTrack truth =
       LogTime::read(arguments.can, settings->can.interface).on_first_clock(*as_written);
+  WheelWatch watch(*settings, {motion_on(truth), "the true path"});
+  const auto steps = read_steps(*settings, arguments.can, watch);
+  std::vector<WheelHint> hints = wheel_hints(*settings, watch.evidence());
+  if (!steps) return not_calibrated(steps.error().message, hints);
+  const std::string files = arguments.can + " with " + arguments.truth + ": ";
   const auto result = calibrate(*steps, truth, odometry.wheels);
-  if (!result) {
-    return failure(arguments.can + " with " + arguments.truth + ": " + result.error().message);
+  if (!result && hints.empty()) return failure(files + result.error().message);
+  if (!result) return not_calibrated(files + "the wheels do not follow the path", hints);
+  if (!can_be_pasted(*result, odometry)) {
+    return not_calibrated(files + "least squares gives a scale of " +
+                              short_number((result->fitted.left + result->fitted.right) / 2) +
+                              " and a track of " + short_number(result->fitted.track_m) +
+                              " m, which no such wheels have",
+                          hints);
   }
+  // What least squares estimates needs no hint.
+  const auto estimated = [](const WheelHint& hint) {
+    return hint.kind == "track" || hint.kind == "radius" || hint.kind == "scale";
+  };
+  hints.erase(std::remove_if(hints.begin(), hints.end(), estimated), hints.end());
+  std::cerr << hint_texts(hints);
   const bool json_on_output = arguments.json == "-";
   (json_on_output ? std::cerr : std::cout)
       << arguments.can << ": " << decimals_text(result->distance_m, 1) << " m, "
@@ -124,9 +178,10 @@ Outcome<void> calibrate_and_report(const CalibrateArguments& arguments) {
       << "\n\nPaste over the same keys of " << arguments.config << ":\n\n"
       << calibrated_yaml(*result, odometry);
   if (json_on_output) {
-    std::cout << json_of(*result);
+    std::cout << json_of(*result, hints);
   } else if (!arguments.json.empty()) {
-    if (const auto written = write_file_atomically(arguments.json, json_of(*result)); !written) {
+    if (const auto written = write_file_atomically(arguments.json, json_of(*result, hints));
+        !written) {
       return cannot_write(arguments.json, written.error());
     }
   }
@@ -136,35 +191,8 @@ Outcome<void> calibrate_and_report(const CalibrateArguments& arguments) {
 }  // namespace
 
 Outcome<std::vector<WheelStep>> read_wheel_steps(const Settings& settings, const std::string& can) {
-  CanLogReader log(can, settings.can.interface);
-  if (const auto opened = log.open(); !opened) {
-    return failure(log.explain(opened.error()), opened.error().code);
-  }
-  const WheelOdometrySettings& wheels = settings.odometry.wheels;
-  const double half_track = wheels.geometry.track_m * wheels.geometry.slip_factor / 2;
-  WheelOdometry odometry(wheels);
-  std::vector<WheelStep> steps;
-  LogMatch frames(log);
-  while (const auto frame = frames.next()) {
-    const std::uint64_t breaks = odometry.counters().gaps + odometry.counters().rebased;
-    const auto increment = odometry.take(*frame);
-    if (!increment || increment->to_ns <= increment->from_ns) continue;
-    const double seconds = static_cast<double>(increment->to_ns - increment->from_ns) * 1e-9;
-    const double forward = increment->speed_m_s * seconds;
-    const double turn = increment->yaw_rate_rad_s * seconds;
-    const bool known = breaks == odometry.counters().gaps + odometry.counters().rebased;
-    steps.push_back({increment->from_ns, increment->to_ns, forward - turn * half_track,
-                     forward + turn * half_track, known});
-  }
-  tell_log_faults(can, log.summary());
-  if (steps.empty()) {
-    const std::string mismatch = frames.mismatch(wheels, can, log.summary());
-    if (!mismatch.empty()) return failure(mismatch);
-    const std::string why = rejected_text(odometry.counters(), wheels);
-    return failure(can + ": holds fewer than two samples that odometry can use" +
-                   (why.empty() ? "" : "; refused: " + why));
-  }
-  return steps;
+  WheelWatch watch(settings);
+  return read_steps(settings, can, watch);
 }
 
 std::string calibrated_yaml(const Calibration& calibration, const OdometrySettings& odometry) {

@@ -41,7 +41,7 @@ std::optional<CanFrame> LogMatch::next() noexcept {
 }
 
 std::string LogMatch::mismatch(const WheelOdometrySettings& settings, const std::string& path,
-                               const CanLogSummary& summary) const {
+                               const CanLogSummary& summary, const std::string& holder) const {
   std::set<Id> wanted;
   for (const CanSignal& signal : signals_of(settings)) wanted.insert({signal.id, signal.extended});
   std::vector<Id> missing;
@@ -68,7 +68,7 @@ std::string LogMatch::mismatch(const WheelOdometrySettings& settings, const std:
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   constexpr std::size_t kListed = 8;
-  text += found.empty() ? "; the log holds no data frame" : "; the log has ";
+  text += "; the " + holder + (found.empty() ? " holds no data frame" : " has ");
   for (std::size_t i = 0; i < std::min(found.size(), kListed); ++i) {
     text += (i > 0 ? ", " : "") + id_text(found[i].first.first, found[i].first.second) + " " +
             times(found[i].second);

@@ -32,9 +32,9 @@ class LogMatch final : public CanFrameSource {
   std::int64_t last_ns() const noexcept { return last_ns_; }
 
   // What odometry looked for and never found, and what the log holds instead; empty when every id
-  // came. `path` is the log's.
+  // came. `path` is the log's; `holder` is "log" or "bus".
   std::string mismatch(const WheelOdometrySettings& settings, const std::string& path,
-                       const CanLogSummary& summary) const;
+                       const CanLogSummary& summary, const std::string& holder = "log") const;
 
  private:
   using Id = std::pair<std::uint32_t, bool>;  // id, 29 bits

@@ -147,38 +147,6 @@ void time_out_by_cycle(double longest_cycle_s, double period_hz, double& timeout
   timeout_s = std::clamp(std::max(kCycles * longest_cycle_s, 2 / period_hz), kLeast_s, kMost_s);
 }
 
-// A key of the section odometry and the signal that it names.
-struct SignalKey {
-  std::string key;  // also as in `invert`
-  std::string name;
-};
-
-std::vector<SignalKey> signal_keys(const OdometrySettings& odometry) {
-  const OdometrySettings& o = odometry;
-  switch (o.wheels.model) {
-    case OdometryModel::kDifferentialPositions:
-    case OdometryModel::kWheelSpeeds:
-      return {{"left", o.left}, {"right", o.right}};
-    case OdometryModel::kTwist:
-      return {{"forward", o.forward}, {"yaw_rate", o.yaw_rate}};
-    case OdometryModel::kAckermannPositions:
-    case OdometryModel::kAckermannSpeeds:
-      return {{"forward", o.forward}, {"steering", o.steering}};
-    case OdometryModel::kMecanumPositions:
-    case OdometryModel::kMecanumSpeeds:
-      return {{"front_left", o.front_left},
-              {"front_right", o.front_right},
-              {"rear_left", o.rear_left},
-              {"rear_right", o.rear_right}};
-    case OdometryModel::kOmniPositions:
-    case OdometryModel::kOmniSpeeds:
-      break;
-  }
-  std::vector<SignalKey> keys;
-  for (const std::string& name : o.around) keys.push_back({std::to_string(keys.size() + 1), name});
-  return keys;
-}
-
 // What the signals of a unit measure, as a unit of a DBC file.
 DbcUnit as_dbc_unit(WheelUnit unit) {
   using Kind = DbcUnit::Kind;
@@ -202,20 +170,6 @@ DbcUnit as_dbc_unit(WheelUnit unit) {
       break;
   }
   return {Kind::kTicks, 1};
-}
-
-// Ground covered per unit of a wheel's signal, both sides alike.
-double metres_per_unit(const OdometrySettings& odometry) {
-  double metres = odometry.scale;
-  if (odometry.unit == WheelUnit::kMetres) return metres;
-  if (is_length(odometry.unit)) return metres * as_dbc_unit(odometry.unit).si;
-  metres *= odometry.wheel_radius_m;
-  if (odometry.unit == WheelUnit::kDegrees) return metres * kDegree_rad / odometry.gear;
-  if (odometry.unit != WheelUnit::kRadians) metres *= 2 * kPi;
-  if (odometry.unit == WheelUnit::kRpm || odometry.unit == WheelUnit::kErpm) metres /= 60;
-  if (odometry.unit == WheelUnit::kErpm) metres /= odometry.pole_pairs;
-  if (odometry.unit == WheelUnit::kTicks) metres /= odometry.ticks_per_turn;
-  return metres / odometry.gear;
 }
 
 bool is_left(const std::string& key) { return key.ends_with("left"); }
@@ -391,6 +345,45 @@ void resolve_signals(const YamlSection& section, SignalNames& names, OdometrySet
 }
 
 }  // namespace
+
+std::vector<SignalKey> signal_keys(const OdometrySettings& odometry) {
+  const OdometrySettings& o = odometry;
+  switch (o.wheels.model) {
+    case OdometryModel::kDifferentialPositions:
+    case OdometryModel::kWheelSpeeds:
+      return {{"left", o.left}, {"right", o.right}};
+    case OdometryModel::kTwist:
+      return {{"forward", o.forward}, {"yaw_rate", o.yaw_rate}};
+    case OdometryModel::kAckermannPositions:
+    case OdometryModel::kAckermannSpeeds:
+      return {{"forward", o.forward}, {"steering", o.steering}};
+    case OdometryModel::kMecanumPositions:
+    case OdometryModel::kMecanumSpeeds:
+      return {{"front_left", o.front_left},
+              {"front_right", o.front_right},
+              {"rear_left", o.rear_left},
+              {"rear_right", o.rear_right}};
+    case OdometryModel::kOmniPositions:
+    case OdometryModel::kOmniSpeeds:
+      break;
+  }
+  std::vector<SignalKey> keys;
+  for (const std::string& name : o.around) keys.push_back({std::to_string(keys.size() + 1), name});
+  return keys;
+}
+
+double metres_per_unit(const OdometrySettings& odometry) {
+  double metres = odometry.scale;
+  if (odometry.unit == WheelUnit::kMetres) return metres;
+  if (is_length(odometry.unit)) return metres * as_dbc_unit(odometry.unit).si;
+  metres *= odometry.wheel_radius_m;
+  if (odometry.unit == WheelUnit::kDegrees) return metres * kDegree_rad / odometry.gear;
+  if (odometry.unit != WheelUnit::kRadians) metres *= 2 * kPi;
+  if (odometry.unit == WheelUnit::kRpm || odometry.unit == WheelUnit::kErpm) metres /= 60;
+  if (odometry.unit == WheelUnit::kErpm) metres /= odometry.pole_pairs;
+  if (odometry.unit == WheelUnit::kTicks) metres /= odometry.ticks_per_turn;
+  return metres / odometry.gear;
+}
 
 std::string beside(const std::string& path, const std::string& name) {
   return (std::filesystem::path(path).parent_path() / name).lexically_normal().string();

@@ -103,6 +103,18 @@ struct OdometrySettings {
   WheelOdometrySettings wheels;                                // complete once loaded
 };
 
+// A key of the section odometry (of omni wheels their number, from 1) and the signal that it names.
+struct SignalKey {
+  std::string key;  // also as in `invert`
+  std::string name;
+};
+
+// Those that the model reads, in its order.
+std::vector<SignalKey> signal_keys(const OdometrySettings& odometry);
+
+// Ground covered per unit of a wheel's signal, both sides alike.
+double metres_per_unit(const OdometrySettings& odometry);
+
 struct CycleSettings {
   double period_hz = 100;
   std::uint32_t most_frames = 64;  // taken from the bus in one cycle

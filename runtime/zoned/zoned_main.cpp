@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // zoned: the robot's program. Wiring only; `replay` lives in runtime/replay, `run` in runtime/live,
-// `calibrate` in runtime/calibrate.
+// `listen` in runtime/listen, `calibrate` in runtime/calibrate.
 #include <CLI/CLI.hpp>
 #include <functional>
 
@@ -8,6 +8,7 @@
 #include "platform/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/calibrate/calibrate_command.hpp"
+#include "runtime/listen/listen_command.hpp"
 #include "runtime/live/can_source.hpp"
 #include "runtime/live/check_command.hpp"
 #include "runtime/live/run_command.hpp"
@@ -171,9 +172,62 @@ void add_run(CLI::App& app, RunArguments& arguments, Command& command) {
   });
 }
 
+void add_listen(CLI::App& app, zonepack::ListenArguments& arguments, Command& command) {
+  CLI::App& listen = *app.add_subcommand(
+      "listen", "shows what the settings read from a CAN bus or a log, and what looks wrong");
+  add_file(listen, "--config", arguments.config, "settings of the robot (YAML)")->required();
+  add_parsed(listen, "--can", "SOURCE",
+             "socketcan:IFACE: a CAN bus, to which nothing is sent; log:FILE or FILE: a whole CAN "
+             "log at once; log:FILE@SPEED: on its own time; sim:SCRIPT[@SPEED]: a simulated bus",
+             "socketcan:IFACE, log:FILE[@SPEED], sim:SCRIPT[@SPEED] or the name of a CAN log",
+             [&arguments](const std::string& text) {
+               const auto feed = zonepack::parse_feed_choice(text);
+               if (feed) arguments.feed = *feed;
+               return feed.has_value();
+             })
+      ->required();
+  listen.add_option("--duration", arguments.duration_s, "end after this time")
+      ->check(CLI::Range(0.01, 1e7))
+      ->type_name("S");
+  listen.add_flag("--once", arguments.once,
+                  "show one picture only, after 2 s or --duration; of a log, at its end");
+  add_parsed(
+      listen, "--expect", "MOTION",
+      "what is done with the robot meanwhile; exit with 1 if the wheels do not: forward[=METRES], "
+      "backward[=METRES], left[=DEGREES] and right[=DEGREES] (turning on the spot), "
+      "left-wheel[=TURNS] and right-wheel[=TURNS] (one wheel, by hand)",
+      "forward, backward, left, right, left-wheel or right-wheel, or one of these and "
+      "=AMOUNT over 0",
+      [&arguments](const std::string& text) {
+        arguments.expected = zonepack::parse_expected_motion(text);
+        return arguments.expected.has_value();
+      });
+  add_file(listen, "--truth", arguments.truth,
+           "true poses of a log, to compare the wheels with: t x y z qx qy qz qw");
+  add_file(listen, "--corrections", arguments.corrections,
+           "the same with the poses of a localizer: stamp received x y yaw sigma_x sigma_y "
+           "sigma_yaw");
+  add_file(listen, "--json", arguments.json,
+           "write the last picture as JSON ('-': standard output, and text to standard error)");
+  listen.callback([&] {
+    if (!arguments.truth.empty() && !arguments.corrections.empty()) {
+      throw CLI::ExcludesError("--truth", "--corrections");
+    }
+    command = [&arguments] { return zonepack::run_listen(arguments); };
+  });
+  zonepack::add_examples(
+      listen,
+      {"zoned listen --config robot.yaml --can socketcan:can0",
+       "zoned listen --config robot.yaml --can socketcan:can0 --expect forward=1 --duration 10",
+       "zoned listen --config robot.yaml --can socketcan:can0 --expect left-wheel=1",
+       "zoned listen --config robot.yaml --can drive.log --corrections fixes.txt --json -"});
+}
+
 void add_calibrate(CLI::App& app, zonepack::CalibrateArguments& arguments, Command& command) {
   CLI::App& calibrate = *app.add_subcommand(
-      "calibrate", "estimates wheel scale and track from a drive whose true path is known");
+      "calibrate",
+      "estimates wheel scale and track from a drive whose true path is known, or says "
+      "which setting does not fit the wheels");
   add_file(calibrate, "--config", arguments.config, "settings of the robot (YAML)")->required();
   calibrate.add_option("--can", arguments.can, "CAN log of the drive")
       ->type_name("LOG")
@@ -214,6 +268,8 @@ int main(int argc, char** argv) {
   add_replay(app, arguments, command);
   RunArguments run_arguments;
   add_run(app, run_arguments, command);
+  zonepack::ListenArguments listen_arguments;
+  add_listen(app, listen_arguments, command);
   zonepack::CalibrateArguments calibrate_arguments;
   add_calibrate(app, calibrate_arguments, command);
   zonepack::add_examples(

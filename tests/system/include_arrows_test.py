@@ -49,7 +49,10 @@ ARROWS = {
     "runtime/replay": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
                       " runtime/recording runtime/run runtime/settings",
     "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
-    "runtime/zoned": "platform platform/command_line platform/version runtime/calibrate runtime/live runtime/pack_format/file"
+    "runtime/listen": "platform platform/base platform/sim runtime/calibrate runtime/live runtime/odometry runtime/run"
+                      " runtime/settings",
+    "runtime/zoned": "platform platform/command_line platform/version runtime/calibrate runtime/listen runtime/live"
+                     " runtime/pack_format/file"
                      " runtime/recording runtime/replay runtime/report",
     "runtime/ctl/commands": "platform platform/base runtime/control runtime/odometry runtime/pack_format/file"
                             " runtime/protocol runtime/run runtime/serve runtime/settings",

@@ -105,6 +105,7 @@ TEST(CalibrateCommand, WritesJsonAndSaysWhatIsWrong) {
   EXPECT_NEAR(result["left"], 1.005, 0.003);
   EXPECT_GT(result["before"]["end_m"], result["after"]["end_m"]);
   EXPECT_EQ(result["sides_differ"], false);
+  EXPECT_THAT(result["hints"], IsEmpty());
 
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
@@ -133,6 +134,24 @@ TEST(CalibrateCommand, WritesJsonAndSaysWhatIsWrong) {
                           "odometry: {model: twist, forward: a, yaw_rate: a}\n";
   EXPECT_THAT(fault_of({.config = twist, .can = kLog, .truth = kTruth, .json = ""}),
               HasSubstr("wheel scale and track are those of differential-positions"));
+}
+
+TEST(CalibrateCommand, SaysWhatIsWrongInsteadOfFittingIt) {
+  std::string swapped = text_of(kConfig);
+  const auto put = [&swapped](const std::string& from, const std::string& to) {
+    const std::size_t at = swapped.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    swapped.replace(at, from.size(), to);
+  };
+  put("left: left_position", "left: right_position");
+  put("right: right_position", "right: left_position");
+  const std::string config = testing::TempDir() + "swapped.yaml";
+  std::ofstream(config) << swapped;
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(run_calibrate({.config = config, .can = kLog, .truth = kTruth, .json = ""}), 1);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              HasSubstr("; write\n    odometry:\n      left: left_position\n"
+                        "      right: right_position\n"));
 }
 
 }  // namespace
