@@ -77,7 +77,7 @@ void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostr
   std::size_t unlinked = 0;
   for (const auto& [session, count] : unlinked_by_session) unlinked += count;
   if (unlinked > 0) {
-    out << "WARNING: " << plural(unlinked, "signature has", "signatures have")
+    out << "WARNING: " << counted(unlinked, "signature has", "signatures have")
         << " no optimised pose (";
     const char* separator = "";
     for (const auto& [session, count] : unlinked_by_session) {
@@ -92,12 +92,12 @@ void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostr
   }
   if (options.unlinked != UnlinkedPolicy::kDrop && s.unlinked_dropped > unconnected) {
     out << "WARNING: "
-        << plural(s.unlinked_dropped - unconnected, "signature has", "signatures have")
+        << counted(s.unlinked_dropped - unconnected, "signature has", "signatures have")
         << " no pose at all; left out\n";
   }
   if (!s.orphans.empty()) {
     const Orphan& first = s.orphans.front();
-    out << "warning: " << plural(s.orphans.size(), "signature stands", "signatures stand")
+    out << "warning: " << counted(s.orphans.size(), "signature stands", "signatures stand")
         << " in no zone (" << s.orphans_text << "; "
         << (options.orphans == OrphanPolicy::kDrop ? "left out" : "given to the nearest")
         << "), such as " << first.id << " at " << point_text(first.p_map) << ", "
@@ -108,7 +108,7 @@ void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostr
         << misdrawn_text(*s.misdrawn, s.orphans.size(), s.signatures + s.orphans_dropped) << "\n";
   }
   for (const SplitZone& split : s.split) {
-    out << "zone " << split.name << " was split into " << plural(split.parts, "part") << "\n";
+    out << "zone " << split.name << " was split into " << counted(split.parts, "part") << "\n";
     if (split.narrow_limit > 0) {
       out << "warning: some parts of zone " << split.name
           << " are narrower than 1 cm, because signatures stand that close and --max-zone-bytes is "
@@ -147,8 +147,8 @@ void run_build(const BuildArguments& arguments, std::ostream& text) {
   Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
   const BuildSummary s = build_map(options, progress);
   print_trouble(s, options, std::cerr);
-  text << options.out.string() << ": " << plural(s.signatures, "signature") << ", "
-       << plural(s.features, "feature") << " in " << plural(s.packs.size(), "zone")
+  text << options.out.string() << ": " << counted(s.signatures, "signature") << ", "
+       << counted(s.features, "feature") << " in " << counted(s.packs.size(), "zone")
        << (s.unchanged ? " (unchanged)" : "") << "\n"
        << std::fixed << std::setprecision(3) << "  charged " << size_text(s.charged_bytes) << ", "
        << ratio(s.charged_bytes, s.feature_row_bytes) << " of the database's feature rows; stored "
@@ -157,7 +157,7 @@ void run_build(const BuildArguments& arguments, std::ostream& text) {
        << "  smallest budget " << size_text(s.smallest.bytes) << "\n";
   const std::vector<Leftover> leftovers = leftovers_of(options.out);
   if (!leftovers.empty()) {
-    text << "  " << plural(leftovers.size(), "file") << " of earlier builds, "
+    text << "  " << counted(leftovers.size(), "file") << " of earlier builds, "
          << size_text(bytes_of(leftovers)) << ", in no use by this map; to remove "
          << (leftovers.size() == 1 ? "it" : "them") << ", once no robot needs the old map: "
          << "zonepack prune " << shell_word(options.out.string()) << "\n";

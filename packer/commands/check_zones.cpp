@@ -158,14 +158,14 @@ void print_signatures(const SignatureCounts& counts, const ZonePlan& plan, bool 
   const std::vector<Orphan>& orphans = counts.partition.orphans;
   const std::vector<OrphanGroup> groups = group_orphans(orphans);
   text << "\n"
-       << plural(counts.places.size() - orphans.size(), "signature") << " in zones, "
+       << counted(counts.places.size() - orphans.size(), "signature") << " in zones, "
        << orphans_text(groups, plan.zones) << "\n";
   for (std::size_t i = 1; i < groups.size() && i <= kGroupsPrinted; ++i) {
     text << "  " << groups[i].count << " " << near_text(groups[i], plan.zones)
          << ", such as signature " << groups[i].example << "\n";
   }
   if (groups.size() > kGroupsPrinted + 1) {
-    text << "  and others near " << plural(groups.size() - kGroupsPrinted - 1, "more zone")
+    text << "  and others near " << counted(groups.size() - kGroupsPrinted - 1, "more zone")
          << " (--json lists every signature)\n";
   }
   if (!orphans.empty() && faulty) {
@@ -174,7 +174,7 @@ void print_signatures(const SignatureCounts& counts, const ZonePlan& plan, bool 
   if (!orphans.empty())
     text << "  build gives them to the nearest zone unless --orphans says otherwise\n";
   if (counts.unlinked > 0) {
-    text << "warning: " << plural(counts.unlinked, "signature")
+    text << "warning: " << counted(counts.unlinked, "signature")
          << " without an optimised pose not counted; build places them as --unlinked says\n";
   }
 }
@@ -241,11 +241,11 @@ int check_zones(const CheckZonesOptions& options, std::ostream& text, ordered_js
   }
   if (!options.out.empty()) draw(options, file, source ? &*source : nullptr);
 
-  text << options.zones << ": " << plural(plan.zones.size(), "zone") << ", "
-       << plural(plan.portals.size(), "portal")
+  text << options.zones << ": " << counted(plan.zones.size(), "zone") << ", "
+       << counted(plan.portals.size(), "portal")
        << (plan.portals_found ? " (none drawn: found from shared borders)" : "") << "; "
-       << plural(findings.faults.size(), "fault") << ", "
-       << plural(findings.warnings.size(), "warning") << "\n";
+       << counted(findings.faults.size(), "fault") << ", "
+       << counted(findings.warnings.size(), "warning") << "\n";
   if (!plan.zones.empty()) print_zones(plan, counts, text);
   if (counts != nullptr) print_signatures(*counts, plan, !findings.faults.empty(), text);
   if (!options.out.empty()) text << "\n" << options.out << ": the zones as a picture\n";

@@ -126,8 +126,8 @@ void write_outline(const OutlineOptions& options, std::ostream& text, ordered_js
                        std::to_string(outline.nodes.size()) +
                        " signatures have no optimised pose and are not drawn");
   }
-  text << options.out.string() << ": " << plural(linked, "signature") << ", "
-       << plural(paths.size(), "trajectory", "trajectories");
+  text << options.out.string() << ": " << counted(linked, "signature") << ", "
+       << counted(paths.size(), "trajectory", "trajectories");
   if (with_map) {
     text << ", a map of " << plan.image.width << " x " << plan.image.height << " cells of "
          << plan.image.resolution_m << " m from " << plan.source;

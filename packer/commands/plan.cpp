@@ -86,9 +86,9 @@ nlohmann::ordered_json to_json(const MapPlan& plan, const PlanArguments& argumen
 }
 
 void print(const BudgetPlan& b, const MapPlan& plan, std::ostream& out) {
-  out << "budget " << size_text(b.bytes) << ": " << plural(b.slots, "slot") << "\n";
+  out << "budget " << size_text(b.bytes) << ": " << counted(b.slots, "slot") << "\n";
   if (!b.suffices) {
-    out << "  BELOW THE SMALLEST by " << plural(plan.smallest.bytes - b.bytes, "byte")
+    out << "  BELOW THE SMALLEST by " << counted(plan.smallest.bytes - b.bytes, "byte")
         << ": the robot would "
         << (b.zones_without_room.empty() ? "enter a zone before it is loaded\n"
                                          : "refuse to start\n");
@@ -103,7 +103,7 @@ void print(const BudgetPlan& b, const MapPlan& plan, std::ostream& out) {
   if (b.whole_map) {
     out << "  holds the whole map: nothing is ever unloaded\n";
   } else {
-    out << "  holds any " << plural(b.largest_zones_at_once, "zone") << " at once\n";
+    out << "  holds any " << counted(b.largest_zones_at_once, "zone") << " at once\n";
   }
 }
 
@@ -125,7 +125,7 @@ void print(const MapPlan& plan, std::ostream& out) {
   const std::string payload = payload_text(plan.payload);
   out << "\nloaded: core" << (payload.empty() ? "" : "," + payload) << "\nfixed "
       << size_text(plan.fixed_bytes) << "\nsmallest budget " << size_text(plan.smallest.bytes)
-      << ", " << plural(plan.smallest.slots, "slot") << ", set by "
+      << ", " << counted(plan.smallest.slots, "slot") << ", set by "
       << pair_text(plan, plan.smallest.pair.zone_a, plan.smallest.pair.zone_b)
       << "\nto change maps live " << size_text(plan.live_change_bytes) << "\n";
   if (plan.budget) print(*plan.budget, plan, out);

@@ -28,10 +28,10 @@ void run_prune(const PruneArguments& arguments) {
     if (!arguments.dry_run) remove_leftover(arguments.folder, leftover);
     bytes += leftover.bytes;
     out << (arguments.dry_run ? "would remove " : "removed ") << leftover.name << " ("
-        << plural(leftover.bytes, "byte") << ")\n";
+        << counted(leftover.bytes, "byte") << ")\n";
     files.push_back({{"file", leftover.name}, {"bytes", leftover.bytes}});
   }
-  out << arguments.folder << ": " << plural(leftovers.size(), "file") << ", " << size_text(bytes)
+  out << arguments.folder << ": " << counted(leftovers.size(), "file") << ", " << size_text(bytes)
       << " " << (arguments.dry_run ? "to remove\n" : "removed\n");
   nlohmann::ordered_json json;
   json["map"] = arguments.folder;

@@ -66,7 +66,7 @@ void print(const Verdict& verdict, const std::string& path, std::ostream& out) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) print_misplaced(verdict, path, out);
   if (!verdict.unnamed.empty()) {
-    out << path << ": " << plural(verdict.unnamed.size(), "pack or part", "packs or parts")
+    out << path << ": " << counted(verdict.unnamed.size(), "pack or part", "packs or parts")
         << " that the manifest does not name; to remove "
         << (verdict.unnamed.size() == 1 ? "it" : "them") << ": zonepack prune " << shell_word(path)
         << "\n";
@@ -75,9 +75,9 @@ void print(const Verdict& verdict, const std::string& path, std::ostream& out) {
   if (verdict.whole()) {
     out << "whole";
   } else {
-    out << "DAMAGED: " << plural(verdict.problem_count(), "problem");
+    out << "DAMAGED: " << counted(verdict.problem_count(), "problem");
   }
-  out << "; " << plural(verdict.packs, "pack") << ", " << plural(verdict.signatures, "signature")
+  out << "; " << counted(verdict.packs, "pack") << ", " << counted(verdict.signatures, "signature")
       << ", " << size_text(verdict.bytes) << " checked\n";
 }
 

@@ -11,10 +11,6 @@
 
 namespace zonepack::packer {
 
-std::string plural(std::uint64_t count, const std::string& one, const std::string& many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
-}
-
 std::string mib_text(ByteCount bytes) {
   constexpr double kLeast = 0.01;
   const double mib = static_cast<double>(bytes) / static_cast<double>(kMiB);
@@ -24,7 +20,7 @@ std::string mib_text(ByteCount bytes) {
 }
 
 std::string size_text(ByteCount bytes) {
-  const std::string text = plural(bytes, "byte");
+  const std::string text = counted(bytes, "byte");
   return bytes < kMiB / 100 ? text : text + " (" + mib_text(bytes) + " MiB)";
 }
 

@@ -2,17 +2,14 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
+#include "platform/base/counted.hpp"  // IWYU pragma: export
 
 // Counts and sizes as the commands print them.
 namespace zonepack::packer {
-
-// "1 signature", "2 signatures"; `many` where an "s" is not enough.
-std::string plural(std::uint64_t count, const std::string& one, const std::string& many = "");
 
 // For columns and sentences: "0.17", in MiB, two decimals; what is smaller but not 0 as "0.01".
 std::string mib_text(ByteCount bytes);

@@ -101,7 +101,7 @@ void print(const fb::Manifest& manifest, const std::string& folder, const std::s
            std::ostream& out) {
   const std::uint32_t portals = manifest.portals() == nullptr ? 0 : manifest.portals()->size();
   out << folder << ": map " << hex_of(*manifest.lineage()) << ", version " << version << "\n"
-      << plural(manifest.zones()->size(), "zone") << ", " << plural(portals, "portal")
+      << counted(manifest.zones()->size(), "zone") << ", " << counted(portals, "portal")
       << ", payload " << payload_text(manifest.payload_mask()) << ", slots of "
       << manifest.slot_bytes() << " bytes\n\n";
   TextTable table(

@@ -66,9 +66,9 @@ Json chunk_json(const fb::ChunkEntry& entry, const std::optional<Placement::Plac
 
 void print(const PackReader& pack, const std::string& path, std::ostream& out) {
   const fb::PackIndex& index = pack.index();
-  out << path << ": zone " << index.zone()->str() << ", " << plural(index.signatures(), "signature")
-      << ", " << plural(index.features(), "feature") << ", " << size_text(pack.file().size())
-      << "\ndigest " << to_hex(pack.tail().digest)
+  out << path << ": zone " << index.zone()->str() << ", "
+      << counted(index.signatures(), "signature") << ", " << counted(index.features(), "feature")
+      << ", " << size_text(pack.file().size()) << "\ndigest " << to_hex(pack.tail().digest)
       << (index.grid_needs_scan() ? "\ngrid cells are stored as points of the scan" : "") << "\n\n";
   TextTable kinds({"kind", "chunks", "decoded", "stored", "ratio"});
   const auto sums = sums_of(index);

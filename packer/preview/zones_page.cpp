@@ -26,7 +26,8 @@ std::string hint_of(const PlannedZone& zone, std::optional<std::size_t> signatur
   if (!zone.zone_type.empty()) text += " (" + zone.zone_type + ")";
   if (!zone.label.empty()) text += ", " + zone.label;
   text += ": " + report::format_fixed(area_m2(zone.polygon), 1) + " m\xC2\xB2";
-  return signatures ? text + ", " + plural(*signatures, "signature") : text;
+  if (!signatures.has_value()) return text;
+  return text + ", " + counted(signatures.value_or(0), "signature");
 }
 
 // One pale colour for each zone_type.
@@ -150,7 +151,7 @@ std::vector<report::Fact> facts_of(const ZonesOnMap& map) {
   const Findings& findings = map.zones->findings;
   std::vector<report::Fact> facts{
       {"zones", format_count(map.zones->plan.zones.size()),
-       plural(map.zones->plan.portals.size(), "portal")},
+       counted(map.zones->plan.portals.size(), "portal")},
       {"faults", format_count(findings.faults.size()),
        findings.faults.empty() ? "zonepack build takes this file" : "zonepack build refuses it",
        !findings.faults.empty()},
@@ -170,12 +171,12 @@ report::Report make_zones_page(const ZonesOnMap& map) {
   const Findings& findings = map.zones->findings;
   report::Report page;
   page.title = "Zones " + map.file;
-  page.headline = plural(map.zones->plan.zones.size(), "zone") + ", " +
-                  plural(map.zones->plan.portals.size(), "portal") + "; " +
-                  plural(findings.faults.size(), "fault") + ", " +
-                  plural(findings.warnings.size(), "warning") + ".";
+  page.headline = counted(map.zones->plan.zones.size(), "zone") + ", " +
+                  counted(map.zones->plan.portals.size(), "portal") + "; " +
+                  counted(findings.faults.size(), "fault") + ", " +
+                  counted(findings.warnings.size(), "warning") + ".";
   if (map.ground != nullptr && !map.zones->plan.zones.empty()) {
-    page.headline += " Of " + plural(map.places.size(), "signature") + ", " +
+    page.headline += " Of " + counted(map.places.size(), "signature") + ", " +
                      orphans_text(group_orphans(map.partition.orphans), map.zones->plan.zones) +
                      ".";
   }

@@ -23,15 +23,16 @@ std::string percent(ByteCount part, ByteCount whole) {
   return format_number(100 * static_cast<double>(part) / static_cast<double>(whole), 1) + " %";
 }
 
-std::string counted(std::uint64_t count, const char* one, const char* many) {
+std::string grouped_count(std::uint64_t count, const char* one, const char* many) {
   return format_count(count) + " " + (count == 1 ? one : many);
 }
 
 std::string headline(const RunSummary& s) {
-  std::string text = counted(s.signatures_loaded, "signature", "signatures") + " loaded, " +
+  std::string text = grouped_count(s.signatures_loaded, "signature", "signatures") + " loaded, " +
                      format_count(s.signatures_unloaded) + " unloaded. ";
   if (s.budget_violations > 0) {
-    return text + "The limit was exceeded in " + counted(s.budget_violations, "cycle.", "cycles.");
+    return text + "The limit was exceeded in " +
+           grouped_count(s.budget_violations, "cycle.", "cycles.");
   }
   text += "The map never took more than " + short_bytes(s.peak_charged_bytes);
   if (s.budget_bytes > 0) {
@@ -52,7 +53,7 @@ std::vector<Fact> facts_of(const RunReportInput& input) {
       {"budget", short_bytes(s.budget_bytes), format_count(s.budget_bytes) + " bytes"},
       {"most charged", short_bytes(s.peak_charged_bytes),
        format_count(s.peak_charged_bytes) + " bytes"},
-      {"over a limit", counted(s.budget_violations, "cycle", "cycles"),
+      {"over a limit", grouped_count(s.budget_violations, "cycle", "cycles"),
        "of " + format_count(s.cycles), s.budget_violations > 0},
       {"most signatures", format_count(s.peak_signatures),
        s.max_signatures > 0 ? "limit " + format_count(s.max_signatures)

@@ -7,9 +7,9 @@ namespace zonepack::packer {
 namespace {
 
 TEST(Words, CountInSingularAndPlural) {
-  EXPECT_EQ(plural(0, "zone"), "0 zones");
-  EXPECT_EQ(plural(1, "zone"), "1 zone");
-  EXPECT_EQ(plural(2, "trajectory", "trajectories"), "2 trajectories");
+  EXPECT_EQ(counted(0, "zone"), "0 zones");
+  EXPECT_EQ(counted(1, "zone"), "1 zone");
+  EXPECT_EQ(counted(2, "trajectory", "trajectories"), "2 trajectories");
 }
 
 TEST(Words, GiveSizesInMiB) {
