@@ -255,9 +255,11 @@ def check_map(page, path):
     line = page.value("document.querySelector('.values').textContent")
     name = page.value("document.querySelector('tbody tr td').textContent")
     check(line.startswith(name) and "charged" in line, f"a press on the row of {name} shows '{line}'")
-    page.value("[...document.querySelectorAll('th button')].find(b => b.textContent === 'Charged').click()")
-    column = page.value("[...document.querySelectorAll('tbody tr')].map(r => r.cells[6].textContent)")
-    numbers = [int(re.sub(r"\D", "", text)) for text in column]
+    column = page.value("""(() => { const heads = [...document.querySelectorAll('th')];
+      const column = heads.findIndex(h => h.textContent.startsWith('Charged'));
+      heads[column].querySelector('button').click();
+      return [...document.querySelectorAll('tbody tr')].map(r => r.cells[column].textContent); })()""")
+    numbers = [float(re.sub(r"[^\d.]", "", text)) for text in column]
     check(numbers == sorted(numbers, reverse=True) and len(numbers) == 24, f"sorted by charged: {numbers}")
 
 
