@@ -21,13 +21,11 @@ using report::format_count;
 constexpr std::size_t kMostListed = 200;  // findings of one kind, in the picture and its tables
 constexpr double kCellWidth_em = 58;      // of a message on a sheet
 
-std::string hint_of(const PlannedZone& zone, std::optional<std::size_t> signatures) {
+std::string hint_of(const PlannedZone& zone) {
   std::string text = zone.name;
   if (!zone.zone_type.empty()) text += " (" + zone.zone_type + ")";
   if (!zone.label.empty()) text += ", " + zone.label;
-  text += ": " + report::format_fixed(area_m2(zone.polygon), 1) + " m\xC2\xB2";
-  if (!signatures.has_value()) return text;
-  return text + ", " + counted(signatures.value_or(0), "signature");
+  return text + ": " + report::format_fixed(area_m2(zone.polygon), 1) + " m\xC2\xB2";
 }
 
 // One pale colour for each zone_type.
@@ -45,12 +43,13 @@ report::FloorPlan plan_of(const ZonesOnMap& map) {
   report::FloorPlan plan;
   for (std::size_t i = 0; i < zones.zones.size(); ++i) {
     const PlannedZone& zone = zones.zones[i];
-    const auto held = i < map.partition.signatures.size()
-                          ? std::optional(map.partition.signatures[i])
-                          : std::nullopt;
+    std::string hint = hint_of(zone);
+    if (i < map.partition.signatures.size()) {
+      hint += ", " + counted(map.partition.signatures[i], "signature");
+    }
     plan.zones.push_back({.name = zone.name,
                           .note = zone.zone_type,
-                          .hint = hint_of(zone, held),
+                          .hint = std::move(hint),
                           .polygon = zone.polygon,
                           .fill = colors.at(zone.zone_type)});
   }

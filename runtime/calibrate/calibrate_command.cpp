@@ -72,20 +72,16 @@ std::string json_of(const Calibration& c, const std::vector<WheelHint>& hints) {
 }
 
 Outcome<Settings> usable_settings(const std::string& config) {
-  LoadedSettings loaded = load_settings(config);
-  if (!loaded.ok()) {
-    std::string all = "settings cannot be used";
-    for (const std::string& fault : loaded.faults) all += "\n  " + fault;
-    return failure(all);
-  }
-  for (const std::string& text : loaded.warnings) std::cerr << "warning: " << text << '\n';
-  if (!has_sides(loaded.settings.odometry.wheels.model)) {
+  auto loaded = load_usable_settings(config);
+  if (!loaded) return loaded.error();
+  for (const std::string& text : loaded->warnings) std::cerr << "warning: " << text << '\n';
+  if (!has_sides(loaded->settings.odometry.wheels.model)) {
     return failure(
         config +
         ": odometry.model: wheel scale and track are those of differential-positions and "
         "wheel-speeds; other models are measured by hand");
   }
-  return std::move(loaded.settings);
+  return std::move(loaded->settings);
 }
 
 // Whether the drive determines it, and the settings can hold it.

@@ -25,19 +25,6 @@ constexpr int kNap_ms = 10;
 constexpr std::size_t kFramesATurn = 4096;
 constexpr double kOnce_s = 2;
 
-Outcome<Settings> usable_settings(const std::string& config) {
-  LoadedSettings loaded = load_settings(config);
-  if (!loaded.ok()) {
-    std::string all = "settings cannot be used";
-    for (const std::string& fault : loaded.faults) all += "\n  " + fault;
-    return failure(all);
-  }
-  for (const std::string& text : loaded.warnings) {
-    std::cerr << kProgram << ": warning: " << text << '\n';
-  }
-  return std::move(loaded.settings);
-}
-
 // The true path or the fixes that go with a log, on the clock of its first frame.
 Outcome<std::optional<TruthTrack>> read_reference(const ListenArguments& arguments,
                                                   const Settings& settings) {
@@ -184,26 +171,29 @@ Outcome<void> write_json(const std::string& path, const std::string& json) {
 }
 
 Outcome<void> listen_and_report(const ListenArguments& arguments) {
-  const auto settings = usable_settings(arguments.config);
-  if (!settings) return settings.error();
-  const auto track = read_reference(arguments, *settings);
+  const auto loaded = load_usable_settings(arguments.config);
+  if (!loaded) return loaded.error();
+  for (const std::string& text : loaded->warnings) {
+    std::cerr << kProgram << ": warning: " << text << '\n';
+  }
+  const Settings& settings = loaded->settings;
+  const auto track = read_reference(arguments, settings);
   if (!track) return track.error();
   Reference reference;
   if (*track) {
     reference = {motion_on(**track),
                  arguments.truth.empty() ? "the localizer's fixes" : "the true path"};
   }
-  auto feed = FrameFeed::open(arguments.feed, *settings);
+  auto feed = FrameFeed::open(arguments.feed, settings);
   if (!feed) return feed.error();
-  const auto session =
-      std::make_unique<Session>(arguments, *settings, **feed, std::move(reference));
+  const auto session = std::make_unique<Session>(arguments, settings, **feed, std::move(reference));
   session->listen();
 
   if (const CanLogSummary* const log = (*feed)->log_summary()) {
     tell_log_faults(arguments.feed.source.name, *log);
   }
   const ListenPicture picture = session->last_picture();
-  const std::string mismatch = session->mismatch(settings->odometry.wheels);
+  const std::string mismatch = session->mismatch(settings.odometry.wheels);
   (arguments.json == "-" ? std::cerr : std::cout)
       << listen_text(picture, session->style()) << std::flush;
   Failures failed;

@@ -111,16 +111,16 @@ std::string wheels_line(const ListenPicture& picture) {
 }
 
 std::string robot_lines(const ListenPicture& picture) {
-  constexpr double kDegree = 180 / kPi;
+  constexpr double kInDegrees = 180 / kPi;
   std::string text = "robot     ";
   if (picture.samples == 0) {
     text += "no step of odometry yet\n";
   } else {
     text += picture.stale ? "stale"
                           : signed_text(picture.speed_m_s, 2) + " m/s, " +
-                                signed_text(picture.yaw_rate_rad_s * kDegree, 1) + " deg/s";
+                                signed_text(picture.yaw_rate_rad_s * kInDegrees, 1) + " deg/s";
     text += "\nway       " + decimals_text(picture.distance_m, 2) + " m, turned " +
-            signed_text(picture.heading_rad * kDegree, 1) + " deg; from the start x " +
+            signed_text(picture.heading_rad * kInDegrees, 1) + " deg; from the start x " +
             signed_text(picture.pose.x_m, 2) + " y " + signed_text(picture.pose.y_m, 2) + " m\n";
   }
   text += "samples   " + std::to_string(picture.samples) + " used, " +

@@ -39,15 +39,11 @@ Outcome<RunInputs> read_run_inputs(const RunChoices& choices) {
     return usage_failure("--start truth needs --truth FILE");
   }
   RunInputs inputs;
-  LoadedSettings loaded = load_settings(choices.config);
-  if (!loaded.ok()) {
-    std::string all = "settings cannot be used";
-    for (const std::string& fault : loaded.faults) all += "\n  " + fault;
-    return failure(std::move(all));
-  }
-  inputs.warnings = std::move(loaded.warnings);
-  inputs.settings = std::move(loaded.settings);
-  inputs.settings_text = std::move(loaded.text);
+  auto loaded = load_usable_settings(choices.config);
+  if (!loaded) return loaded.error();
+  inputs.warnings = std::move(loaded->warnings);
+  inputs.settings = std::move(loaded->settings);
+  inputs.settings_text = std::move(loaded->text);
   const std::string folder = choices.map.empty() ? inputs.settings.map.path : choices.map;
   if (folder.empty()) {
     return failure("no map: give --map DIR or map.path in " + choices.config);

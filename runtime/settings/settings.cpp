@@ -130,4 +130,12 @@ LoadedSettings load_settings(const std::string& path) {
   return parse_settings(text, path);
 }
 
+Outcome<LoadedSettings> load_usable_settings(const std::string& path) {
+  LoadedSettings loaded = load_settings(path);
+  if (loaded.ok()) return loaded;
+  std::string all = "settings cannot be used";
+  for (const std::string& fault : loaded.faults) all += "\n  " + fault;
+  return failure(all);
+}
+
 }  // namespace zonepack

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
+#include "platform/base/failure.hpp"
 #include "platform/storage.hpp"
 #include "runtime/odometry/can_signals.hpp"
 #include "runtime/odometry/pose_filter.hpp"
@@ -165,6 +166,9 @@ struct LoadedSettings {
 
 // Reads a settings file, and the DBC file that it names. Never throws.
 LoadedSettings load_settings(const std::string& path);
+
+// The same for programs: with faults, a failure that lists them all, one a line.
+Outcome<LoadedSettings> load_usable_settings(const std::string& path);
 
 // The same for a text; messages name `path`, and map.path and can.dbc are relative to its folder.
 // dbc_text, unless empty, replaces the file that can.dbc names.

@@ -169,7 +169,7 @@ Bytes pack_of_one(const Bytes& stored, std::uint32_t decoded_size, fb::PayloadKi
   return file;
 }
 
-Bytes bytes_of(const Builder& builder) {
+Bytes built(const Builder& builder) {
   const auto bytes = std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize()));
   return {bytes.begin(), bytes.end()};
 }
@@ -182,7 +182,7 @@ Bytes table_of(std::uint32_t total_rows) {
   const auto columns = out.CreateVectorOfStructs(std::vector<fb::Column>());
   const auto bytes = out.CreateVector(std::vector<std::uint8_t>(kColumnPadding, 0));
   fb::FinishBulkChunkBuffer(out, fb::CreateBulkChunk(out, records, columns, bytes));
-  return bytes_of(out);
+  return built(out);
 }
 
 Bytes core_with_label_of(std::size_t length) {
@@ -198,7 +198,7 @@ Bytes core_with_label_of(std::size_t length) {
   fb::CoreChunkBuilder chunk(out);
   chunk.add_signatures(list);
   fb::FinishCoreChunkBuffer(out, chunk.Finish());
-  return bytes_of(out);
+  return built(out);
 }
 
 // A pack of zone z000000 with `entries` images of a byte, and zeros behind its index.

@@ -161,7 +161,9 @@ class LimitRow : public testing::TestWithParam<Limit> {
         }
         return "";
     }
-    packer::ManifestContent content{.plan = &plan, .packs = &packs};
+    packer::ManifestContent content;
+    content.plan = &plan;
+    content.packs = &packs;
     content.nodes.resize(plan.zones.size());
     content.payload = kCoreOnly;
     try {
@@ -203,7 +205,9 @@ TEST_P(LimitRow, IsRefusedByVerifyWithFileZoneValueAndLimit) {
   const std::string said = verify();
   EXPECT_NE(said.find(refusal(row().most + 1)), std::string::npos) << said;
   EXPECT_TRUE(said.starts_with("manifest.zpm: ") || said.starts_with("z.zpk: ")) << said;
-  if (names_zone()) EXPECT_NE(said.find("z000000"), std::string::npos) << said;
+  if (names_zone()) {
+    EXPECT_NE(said.find("z000000"), std::string::npos) << said;
+  }
 }
 
 TEST_P(LimitRow, IsRefusedByTheRobotWithZoneValueAndLimit) {
@@ -211,7 +215,9 @@ TEST_P(LimitRow, IsRefusedByTheRobotWithZoneValueAndLimit) {
   write_map(row().most + 1);
   const std::string said = robot();
   EXPECT_NE(said.find(refusal(row().most + 1)), std::string::npos) << said;
-  if (names_zone()) EXPECT_NE(said.find("z000000"), std::string::npos) << said;
+  if (names_zone()) {
+    EXPECT_NE(said.find("z000000"), std::string::npos) << said;
+  }
 }
 
 TEST_P(LimitRow, IsNoReasonForARefusalAtTheLimitItself) {

@@ -54,12 +54,12 @@ Settings settings_of(const std::string& text) {
   return loaded.settings;
 }
 
-enum class Against { kTruth, kFixes, kTwist };
+enum class Against { kTruePath, kFixes, kTwist };
 
-std::vector<WheelHint> hints_for(const std::string& text, Against against = Against::kTruth) {
+std::vector<WheelHint> hints_for(const std::string& text, Against against = Against::kTruePath) {
   const Settings settings = settings_of(text);
   std::optional<TruthTrack> track;
-  if (against == Against::kTruth) track = read_truth(kDrive + "base_groundtruth.txt").value();
+  if (against == Against::kTruePath) track = read_truth(kDrive + "base_groundtruth.txt").value();
   if (against == Against::kFixes) {
     track = track_of(read_corrections(kDrive + "corrections.txt").value());
   }
@@ -73,7 +73,7 @@ std::vector<WheelHint> hints_for(const std::string& text, Against against = Agai
 }
 
 // The one hint that is expected.
-WheelHint hint_for(const std::string& text, Against against = Against::kTruth) {
+WheelHint hint_for(const std::string& text, Against against = Against::kTruePath) {
   const auto hints = hints_for(text, against);
   EXPECT_EQ(hints.size(), 1u);
   return hints.empty() ? WheelHint() : hints[0];
@@ -86,7 +86,7 @@ TEST(WheelHints, TheRightSettingsGiveNone) {
 }
 
 TEST(WheelHints, SwappedWheelsAreSwappedBack) {
-  for (const Against against : {Against::kTruth, Against::kFixes, Against::kTwist}) {
+  for (const Against against : {Against::kTruePath, Against::kFixes, Against::kTwist}) {
     const WheelHint hint = hint_for(swapped(agilex()), against);
     EXPECT_EQ(hint.kind, "swapped");
     EXPECT_THAT(hint.yaml,
@@ -125,7 +125,7 @@ TEST(WheelHints, AMissingGearIsNamedWithItsRatio) {
   // Turns of a motor before a gear of 30: 0.001 m are 0.001 / (2 pi 0.14 m) * 30 turns = 0.0341046.
   const std::string turns =
       changed(with_factor(agilex(), 0.034104629), "unit: metres", "unit: turns");
-  for (const Against against : {Against::kTruth, Against::kFixes, Against::kTwist}) {
+  for (const Against against : {Against::kTruePath, Against::kFixes, Against::kTwist}) {
     EXPECT_EQ(hint_for(turns, against).kind, "gear");
     EXPECT_THAT(hint_for(turns, against).yaml, ElementsAre("odometry:", "  gear: 30"));
   }

@@ -22,7 +22,24 @@ struct Said {
   std::string out, err;
 };
 
-Said listen(ListenArguments arguments, const std::string& can) {
+// ListenArguments without the source.
+struct Asked {
+  std::string config = kConfig;
+  std::optional<double> duration_s = {};
+  std::string truth = {}, corrections = {}, json = {};
+  std::optional<ExpectedMotion> expected = {};
+  bool once = false;
+};
+
+Said listen(const Asked& asked, const std::string& can) {
+  ListenArguments arguments;
+  arguments.config = asked.config;
+  arguments.duration_s = asked.duration_s;
+  arguments.truth = asked.truth;
+  arguments.corrections = asked.corrections;
+  arguments.json = asked.json;
+  arguments.expected = asked.expected;
+  arguments.once = asked.once;
   const auto feed = parse_feed_choice(can);
   EXPECT_TRUE(feed) << can;
   arguments.feed = *feed;
@@ -56,8 +73,7 @@ TEST(FeedChoice, TakesTheSourcesOfARunAndThePlainNameOfALog) {
 
 TEST(ListenCommand, ReadsAWholeLogAndWritesJson) {
   const Said said =
-      listen({.config = kConfig, .corrections = kDrive + "corrections.txt", .json = "-"},
-             kDrive + "can0.log");
+      listen({.corrections = kDrive + "corrections.txt", .json = "-"}, kDrive + "can0.log");
   EXPECT_EQ(said.code, 0);
   EXPECT_THAT(said.err, HasSubstr("left_position"));
   const auto json = nlohmann::json::parse(said.out);
@@ -83,7 +99,7 @@ TEST(ListenCommand, ALogWithoutTheFramesFailsWithWhatItHas) {
 }
 
 TEST(ListenCommand, ADurationEndsALogEarly) {
-  const Said said = listen({.config = kConfig, .duration_s = 10}, kDrive + "can0.log");
+  const Said said = listen({.duration_s = 10}, kDrive + "can0.log");
   EXPECT_EQ(said.code, 0);
   EXPECT_THAT(said.out, HasSubstr("can0.log: 10.0 s, 100"));
 }
@@ -92,7 +108,7 @@ TEST(ListenCommand, ADurationEndsALogEarly) {
 TEST(ListenCommand, ASimulatedRobotThatDoesWhatIsExpectedPasses) {
   const std::string script =
       "sim:" + written("ahead.yaml", "drive: {legs: [{for: 4, speed: 0.5}]}\n") + "@100";
-  ListenArguments arguments{.config = kConfig, .once = true};
+  Asked arguments{.once = true};
   arguments.duration_s = 60;
   arguments.expected = parse_expected_motion("forward");
   EXPECT_EQ(listen(arguments, script).code, 0);
@@ -106,15 +122,14 @@ TEST(ListenCommand, ASimulatedRobotThatDoesWhatIsExpectedPasses) {
 TEST(ListenCommand, NamesTheFileThatCannotBeUsed) {
   EXPECT_THAT(listen({.config = "/none.yaml"}, kDrive + "can0.log").err,
               HasSubstr("/none.yaml: cannot be read"));
-  EXPECT_THAT(listen({.config = kConfig}, "/none.log").err, HasSubstr("/none.log"));
-  EXPECT_THAT(listen({.config = kConfig, .truth = "/none.txt"}, kDrive + "can0.log").err,
-              HasSubstr("/none.txt"));
-  const Said bus = listen({.config = kConfig, .truth = "t.txt"}, "socketcan:none0");
+  EXPECT_THAT(listen({}, "/none.log").err, HasSubstr("/none.log"));
+  EXPECT_THAT(listen({.truth = "/none.txt"}, kDrive + "can0.log").err, HasSubstr("/none.txt"));
+  const Said bus = listen({.truth = "t.txt"}, "socketcan:none0");
   EXPECT_EQ(bus.code, 2);
-  const Said absent = listen({.config = kConfig}, "socketcan:none0");
+  const Said absent = listen({}, "socketcan:none0");
   EXPECT_EQ(absent.code, 1);
   EXPECT_THAT(absent.err, HasSubstr("none0"));
-  const Said json = listen({.config = kConfig, .json = "/none/a.json"}, kDrive + "can0.log");
+  const Said json = listen({.json = "/none/a.json"}, kDrive + "can0.log");
   EXPECT_EQ(json.code, 1);
   EXPECT_THAT(json.err, HasSubstr("/none/a.json: cannot be written"));
 }
