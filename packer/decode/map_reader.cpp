@@ -71,8 +71,9 @@ MapReader::MapReader(std::filesystem::path folder) : folder_(std::move(folder)) 
   const Result<const fb::Manifest*> checked = check_manifest(file_, &fault);
   if (!checked) {
     throw std::runtime_error(path + ": " + manifest_fault_text(checked.error(), fault) +
-                             "; 'zonepack verify' reports what is damaged, 'zonepack build' makes "
-                             "the map again");
+                             "; to see what is damaged: zonepack verify " +
+                             shell_quoted(folder_.string()) +
+                             "; 'zonepack build' makes the map again");
   }
   manifest_ = *checked;
 }

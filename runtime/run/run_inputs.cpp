@@ -19,7 +19,7 @@ Failure map_failure(const std::string& folder, const Error& error, const std::st
                             ": reading it and holding its tables takes " +
                             format_byte_count(static_cast<ByteCount>(error.detail)) +
                             ", over the " + limit +
-                            "; zonepack verify tells whether it is as zonepack build writes it"};
+                            "; zonepack verify reports whether it is as zonepack build writes it"};
   }
   if (!why.empty()) {
     return {error.code, folder + "/" + std::string(kManifestName) + ": " + why +

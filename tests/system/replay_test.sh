@@ -117,6 +117,14 @@ for by in 1700000000 -1700000000 30 -20; do
   says "the clock of the log was set"
   (($(wc -l <captured.log) == $(wc -l <set.log))) || fail "the recording lost frames"
 done
-exits 0 "$bin/zoned" calibrate --config "$config" --can set.log --truth "$run/base_groundtruth.txt"
+# The true path was stamped by the same clock.
+for by in 0 30; do
+  set_by "$by"
+  awk -v from="$started" -v by="$by" '/^#/ { print; next } { if ($1 - from >= 60) $1 = sprintf("%.6f", $1 + by); print }' \
+    "$run/base_groundtruth.txt" >set_truth.txt
+  exits 0 "$bin/zoned" calibrate --config "$config" --can set.log --truth set_truth.txt --json calibrated-$by.json
+done
+jq -e --slurpfile set calibrated-30.json '(.left - $set[0].left | fabs) < 0.001' calibrated-0.json >/dev/null ||
+  fail "a clock set by 30 s changes what is calibrated: $(cat calibrated-0.json calibrated-30.json)"
 says "the clock of the log was set"
 echo "scenario 1 keeps its promises"

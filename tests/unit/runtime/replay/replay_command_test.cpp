@@ -95,7 +95,7 @@ TEST(SummaryJson, HasNoPoseErrorWithoutTruth) {
 }
 
 TEST(SummaryTable, NamesTheBudgetInBytesAndMebibytes) {
-  EXPECT_NE(summary_table(summary()).find("1083744 bytes (1.03 MiB)"), std::string::npos);
+  EXPECT_NE(summary_table(summary()).find("1.03 MiB (1083744 bytes)"), std::string::npos);
 }
 
 }  // namespace
