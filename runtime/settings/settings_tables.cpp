@@ -290,7 +290,8 @@ const Fields<RecorderSettings>& recorder_fields() {
   using S = RecorderSettings;
   static const Fields<S> fields = {
       {"bytes", &S::bytes, 0, kMost, "bytes",
-       "how much of the newest inputs is kept, with the maps that they need, at least 2 MiB; 0: off"},
+       "how much of the newest inputs is kept, with the maps that they need, at least 2 MiB; 0: "
+       "off"},
   };
   return fields;
 }

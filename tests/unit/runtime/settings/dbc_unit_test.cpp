@@ -53,7 +53,8 @@ TEST(DbcUnit, KnowsTheSpellingsOfPublicFiles) {
            Case{"counts/s", Kind::kTicks, 1, true},
            Case{"", Kind::kNone, 1, false},
            Case{"-", Kind::kNone, 1, false},
-           Case{"%", Kind::kPercent, 0.01, false}, Case{"Percent", Kind::kPercent, 0.01, false},
+           Case{"%", Kind::kPercent, 0.01, false},
+           Case{"Percent", Kind::kPercent, 0.01, false},
            Case{"Nm", Kind::kUnknown, 1, false},
            Case{"m/s^2", Kind::kUnknown, 1, false},
            Case{"\xC2\xB0"
