@@ -32,7 +32,7 @@ std::string misplaced_map_file(const std::string& path) {
   const Magic& magic = is_manifest ? kManifestMagic : kPackMagic;
   const std::string kind =
       misplaced_at(path, {reinterpret_cast<const char*>(magic.data()), magic.size()});
-  if (kind.empty()) return kind;
+  if (kind.empty()) return {};
   return kind + "; expected " + (is_manifest ? "the manifest of a map" : "a pack of a map") +
          " as 'zonepack build' writes it: copy it again, or build the map again";
 }

@@ -55,6 +55,7 @@ std::vector<OrphanGroup> group_orphans(std::span<const Orphan> orphans) {
     group.farthest_m = std::max(group.farthest_m, orphan.distance_m);
   }
   std::vector<OrphanGroup> sorted;
+  sorted.reserve(groups.size());
   for (const auto& [key, group] : groups) sorted.push_back(group);
   std::ranges::stable_sort(
       sorted, [](const OrphanGroup& a, const OrphanGroup& b) { return a.count > b.count; });
