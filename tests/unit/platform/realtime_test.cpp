@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "platform/clock.hpp"
+#include "platform/foreign_heap.hpp"
 
 namespace zonepack {
 namespace {
@@ -94,6 +95,9 @@ std::uint64_t locked_code_of(const std::string& library) {
 }
 
 TEST(LockMemory, TakesWhatAControlThreadTouchesAndNotTheCodeOfOtherLibraries) {
+#ifdef ZONEPACK_FOREIGN_HEAP
+  GTEST_SKIP() << "the sanitizers leave mlock() out";
+#endif
   const std::vector<char> written(8 << 20);
   if (!lock_memory_now()) GTEST_SKIP() << "no privilege to lock memory";
   EXPECT_GE(status_bytes("VmLck:"), written.size());
@@ -107,7 +111,7 @@ TEST(LockMemory, TakesWhatAControlThreadTouchesAndNotTheCodeOfOtherLibraries) {
 // In a process of its own, whose heap nothing else has divided: 32 MiB are taken and freed, which
 // one heap keeps, and given back.
 TEST(OneHeapDeathTest, KeepsWhatIsFreedUntilItIsGivenBack) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef ZONEPACK_FOREIGN_HEAP
   GTEST_SKIP() << "the sanitizers have a heap of their own";
 #endif
   constexpr std::size_t kBlock = 64 * 1024, kBlocks = 512;
