@@ -91,7 +91,7 @@ Result<ByteSpan> ZoneLoad::stored(const fb::ChunkEntry& entry, std::byte* place)
   const std::uint64_t from = entry.offset();
   const std::uint64_t end = from + entry.stored_size();
   if (window_from_ <= from && end <= window_from_ + window_.size()) {
-    return window_.subspan(from - window_from_, entry.stored_size());
+    return window_.subspan(static_cast<std::size_t>(from - window_from_), entry.stored_size());
   }
   const auto in_place = [](const fb::ChunkEntry& chunk) {
     return chunk.codec() == fb::ChunkCodec::Raw;
@@ -104,7 +104,7 @@ Result<ByteSpan> ZoneLoad::stored(const fb::ChunkEntry& entry, std::byte* place)
     if (!wanted(more) || in_place(more) || to + more.stored_size() - from > buffer_.size()) break;
     to += more.stored_size();
   }
-  const Result<ByteSpan> window = fetch(from, to - from, buffer_);
+  const Result<ByteSpan> window = fetch(from, static_cast<std::size_t>(to - from), buffer_);
   if (!window) return window;
   window_ = *window;
   window_from_ = from;

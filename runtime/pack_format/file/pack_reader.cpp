@@ -31,7 +31,7 @@ Result<PackReader> PackReader::open(const std::string& path, const Digest32* exp
   }
   file->read_ahead(0, front);
   alignas(8) std::array<std::byte, kUsualIndexBytes> end;
-  const auto last = std::span(end).last(end_bytes);
+  const auto last = std::span(end).last(static_cast<std::size_t>(end_bytes));
   if (const auto read = file->read_at(file->size() - last.size(), last); !read) {
     return read.error();
   }
@@ -45,8 +45,9 @@ Result<PackReader> PackReader::open(const std::string& path, const Digest32* exp
   if (const auto read = file->read_at(0, header); !read) return read.error();
 
   PackReader reader(std::move(*file), *tail, front);
-  const auto index = std::as_writable_bytes(std::span(reader.words_)).first(tail->index_size);
-  if (const std::uint64_t have = last.size() - sizeof(PackTail); index.size() <= have) {
+  const auto index = std::as_writable_bytes(std::span(reader.words_))
+                         .first(static_cast<std::size_t>(tail->index_size));
+  if (const std::size_t have = last.size() - sizeof(PackTail); index.size() <= have) {
     std::ranges::copy(last.subspan(have - index.size(), index.size()), index.begin());
   } else if (const auto read = reader.file_.read_at(tail->index_offset, index); !read) {
     return read.error();
