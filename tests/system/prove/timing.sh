@@ -5,7 +5,7 @@
 # CYCLES cycles as fast as they go. Judged, in the middle of all pairs: wake-up p50 and p99 within 1.2 times
 # cyclictest's (the mean of the one before and the one after) plus 20 us; the cycle's own work within 50 us at p99.99,
 # in runs under 30 s at p99, or, where this machine stalls any program longer, within 1.5 times what a fixed piece of
-# work of the same length took (at p99.99; in short runs at p99.9). A neighbour of this machine can spoil a round of pairs: one that misses is measured
+# work of the same length took. A neighbour of this machine can spoil a round of pairs: one that misses is measured
 # again, up to three rounds, and all are printed; a program that is late misses in each. And in every run: no page
 # fault, no allocation. Rarer stalls are printed next to cyclictest's. Exit code 77 without the privilege for real time.
 set -euo pipefail
@@ -104,7 +104,7 @@ measure_pairs() {
 }
 
 judge_pairs() {  # sets `missed` to what is over its bound, or to nothing
-  local percentile excess own fixed tail=p9999 stall=p9999
+  local percentile excess own fixed tail=p9999
   missed=
   for percentile in p50 p99; do
     excess=$(median_excess $percentile)
@@ -121,10 +121,9 @@ judge_pairs() {  # sets `missed` to what is over its bound, or to nothing
         "\$b[0].$percentile / \$a[0].$percentile * 100 | round / 100"
     done | tr '\n' ' ')"
   done
-  # Of fewer cycles, p99.99 is the worst one, and the stalls of a few seconds fall on either program by chance.
-  ((seconds >= 30)) || tail=p99 stall=p999
-  own=$(middle zoned .cycle_us.$tail) fixed=$(middle fixed ".$stall")
-  echo "own work $tail, middle of $pairs pairs: $own us; fixed work of the same length, $stall: $fixed us"
+  ((seconds >= 30)) || tail=p99  # of fewer cycles, p99.99 is the worst one
+  own=$(middle zoned .cycle_us.$tail) fixed=$(middle fixed .$tail)
+  echo "own work $tail, middle of $pairs pairs: $own us; fixed work of the same length: $fixed us"
   awk "BEGIN { exit !($own <= 50 || $own <= 1.5 * $fixed) }" || missed="a cycle's own work is over 50 us at $tail"
 }
 
