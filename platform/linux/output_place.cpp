@@ -24,13 +24,15 @@ std::string folder_of_path(const std::string& path) {
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-Result<void> check_output_place(const std::string& path) noexcept {
+Result<void> check_output_place(const std::string& path, Overwriting how) noexcept {
   struct stat status {};
-  const bool exists = ::stat(path.c_str(), &status) == 0;
-  if (exists && S_ISDIR(status.st_mode)) return {ErrorCode::kIo, EISDIR};
-  if (exists && ::access(path.c_str(), W_OK) != 0) return last_error();
-  // A device or a pipe is written in place; a regular file may be replaced, which needs its folder.
-  if (exists && !S_ISREG(status.st_mode)) return {};
+  if (::stat(path.c_str(), &status) == 0) {
+    if (S_ISDIR(status.st_mode)) return {ErrorCode::kIo, EISDIR};
+    // A device or a pipe is always written as it stands.
+    if (!S_ISREG(status.st_mode) || how == Overwriting::kInPlace) {
+      return ::access(path.c_str(), W_OK) == 0 ? Result<void>() : Result<void>(last_error());
+    }
+  }
   const std::string folder = folder_of_path(path);
   if (::stat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode)) {
     return {ErrorCode::kNotFound, errno};

@@ -159,18 +159,17 @@ OpenedFeed open_bus(const std::string& interface) {
 }  // namespace
 
 std::optional<FeedChoice> parse_feed_choice(const std::string& text) {
-  using Kind = CanSourceChoice::Kind;
   constexpr std::string_view kLog = "log:";
   if (auto source = parse_can_source(text)) {
-    const bool whole =
-        source->kind == Kind::kLog && source->name.size() + kLog.size() == text.size();
+    const bool whole = source->kind == CanSourceChoice::Kind::kLog &&
+                       source->name.size() + kLog.size() == text.size();
     return FeedChoice{*source, !whole};
   }
   for (const std::string_view prefix : {"socketcan:", "log:", "sim:"}) {
     if (text.starts_with(prefix)) return std::nullopt;
   }
   if (text.empty()) return std::nullopt;
-  return FeedChoice{{Kind::kLog, text, 1}, false};
+  return FeedChoice{{CanSourceChoice::Kind::kLog, text, 1}, false};
 }
 
 Outcome<std::unique_ptr<FrameFeed>> FrameFeed::open(const FeedChoice& choice,

@@ -170,8 +170,8 @@ Outcome<void> run_and_report(const RunArguments& arguments) {
 Outcome<void> check_run_outputs(const RunArguments& arguments) {
   return check_outputs({{"--events", arguments.events, true},
                         {"--json", arguments.json, true},
-                        {"--record", arguments.record},
-                        {"--record-can", arguments.record_can}});
+                        {"--record", arguments.record, false, Overwriting::kInPlace},
+                        {"--record-can", arguments.record_can, false, Overwriting::kInPlace}});
 }
 
 int run_live(const RunArguments& arguments) {

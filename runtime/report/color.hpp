@@ -11,8 +11,8 @@ namespace zonepack::report {
 struct Color {
   std::uint8_t r = 0, g = 0, b = 0;
   friend bool operator==(const Color&, const Color&) = default;
-  friend bool operator<(const Color& a, const Color& b) noexcept {
-    return std::tie(a.r, a.g, a.b) < std::tie(b.r, b.g, b.b);
+  friend bool operator<(const Color& one, const Color& other) noexcept {
+    return std::tie(one.r, one.g, one.b) < std::tie(other.r, other.g, other.b);
   }
 };
 

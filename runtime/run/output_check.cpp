@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/run/output_check.hpp"
 
-#include "platform/output_place.hpp"
-
 namespace zonepack {
 
 Outcome<void> check_outputs(std::initializer_list<OutputChoice> outputs) {
@@ -18,7 +16,7 @@ Outcome<void> check_outputs(std::initializer_list<OutputChoice> outputs) {
       taken_by = output.option;
       continue;
     }
-    const auto possible = check_output_place(output.path);
+    const auto possible = check_output_place(output.path, output.overwriting);
     if (possible) continue;
     const std::string name = std::string(output.option) + ": " + output.path;
     if (possible.error().code == ErrorCode::kNotFound) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "platform/base/failure.hpp"
+#include "platform/output_place.hpp"
 
 namespace zonepack {
 
@@ -14,6 +15,7 @@ struct OutputChoice {
   const char* option;
   const std::string& path;
   bool may_be_standard_output = false;
+  Overwriting overwriting = Overwriting::kByRename;
 };
 
 // Before a run: whether each file could be written, so that a long run is not made for nothing. All

@@ -162,7 +162,7 @@ Outcome<void> ctl_events(const std::string& socket, const std::string& json) {
   if (!session) return session.error();
   std::ofstream file;
   if (!json.empty() && json != "-") {
-    if (const auto possible = check_output_place(json); !possible) {
+    if (const auto possible = check_output_place(json, Overwriting::kInPlace); !possible) {
       return cannot_write(json, possible.error());
     }
     file.open(json, std::ios::app);

@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
 
 #include "tests/support/temporary_folder.hpp"
 
@@ -41,6 +45,27 @@ TEST(OutputCheck, GivesStandardOutputToOneOnly) {
   ASSERT_FALSE(both);
   EXPECT_EQ(exit_code(both.error()), 2);
   EXPECT_THAT(both.error().message, HasSubstr("--events - and --json -"));
+}
+
+// As a user whom permissions bind: root may write everything.
+int failures_of(const OutputChoice& output) {
+  constexpr uid_t kNobody = 65534;
+  if (::geteuid() == 0 && ::setuid(kNobody) != 0) return 2;
+  return check_outputs({output}) ? 0 : 1;
+}
+
+TEST(OutputCheck, AsksForTheFolderOfAFileThatIsReplacedAndForTheFileThatIsWrittenInPlace) {
+  const test_support::TemporaryFolder folder;
+  const std::string file = folder / "live.jsonl";
+  std::ofstream(file) << "of another run\n";
+  ASSERT_EQ(chmod(file.c_str(), 0444), 0);
+  ASSERT_EQ(chmod((folder / "").c_str(), 0777), 0);
+  const OutputChoice replaced{"--events", file, true};
+  const OutputChoice in_place{"--record-can", file, false, Overwriting::kInPlace};
+  EXPECT_EXIT(std::_Exit(failures_of(replaced)), testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(std::_Exit(failures_of(in_place)), testing::ExitedWithCode(1), "");
+  ASSERT_EQ(chmod((folder / "").c_str(), 0555), 0);
+  EXPECT_EXIT(std::_Exit(failures_of(replaced)), testing::ExitedWithCode(1), "");
 }
 
 }  // namespace
