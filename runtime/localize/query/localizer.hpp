@@ -8,6 +8,7 @@
 #include "runtime/localize/camera/camera_model.hpp"
 #include "runtime/localize/camera/grey_image.hpp"
 #include "runtime/localize/features/detector_settings.hpp"
+#include "runtime/localize/features/image_features.hpp"
 #include "runtime/localize/query/map_features.hpp"
 #include "runtime/localize/query/query_result.hpp"
 
@@ -19,9 +20,6 @@ struct QueryOptions {
   std::uint64_t seed = 1;     // of RANSAC: the same seed, the same result
   bool keep_matches = false;  // fill QueryResult::drawn
 };
-
-// Features of an image, detected once and matched as often as wanted.
-class ImageFeatures;
 
 // Finds the pose of a camera among signatures of the map.
 //
@@ -43,7 +41,8 @@ class Localizer {
                     const std::optional<QueryPrior>& prior);
 
   // The same in two steps, for a search that tries many zones with buffered views.
-  std::shared_ptr<const ImageFeatures> detect(const GreyImage& image);
+  // detect() gives none for an image that is not of the calibration's size.
+  std::optional<ImageFeatures> detect(const GreyImage& image);
   QueryResult locate(const ImageFeatures& features, std::span<const MapFeatures* const> map,
                      const std::optional<QueryPrior>& prior);
 
