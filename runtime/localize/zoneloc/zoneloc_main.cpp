@@ -7,6 +7,7 @@
 #include "platform/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/localize/zoneloc/add_run.hpp"
+#include "runtime/protocol/messages.hpp"
 
 // An exception that comes here is a bug: it stops the process.
 // NOLINTNEXTLINE(bugprone-exception-escape)
@@ -16,7 +17,8 @@ int main(int argc, char** argv) {
       "Finds the robot's pose in a camera's images, among the map's zones in memory.\n"
       "Exit codes: 0 done, 1 the input or the world is bad, 2 usage.",
       "zoneloc");
-  app.set_version_flag("--version", zonepack::version_line("zoneloc", {}));
+  app.set_version_flag("--version", zonepack::version_line(
+                                        "zoneloc", {{"protocol", zonepack::kProtocolVersion, {}}}));
   app.require_subcommand(1);
   std::function<int()> command;
   zonepack::localize::RunArguments run;
