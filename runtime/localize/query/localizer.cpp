@@ -28,7 +28,7 @@ constexpr double kSecondPassDistance = 80;  // of 256 bits
 constexpr double kVisible_px = 8;
 // Poses that are worth a second pass: the best of RANSAC and those nearly as good.
 constexpr std::size_t kStarts = 3;
-constexpr double kStartShare = 0.7;
+constexpr double kStartShare = 0.85;
 constexpr std::size_t kFirstPassSignatures = 12;
 constexpr std::size_t kSecondPassSignatures = 60;
 constexpr double kMostTilt_rad = 6 * std::numbers::pi / 180;
