@@ -34,9 +34,9 @@ constexpr std::size_t kSecondPassSignatures = 60;
 constexpr double kMostTilt_rad = 6 * std::numbers::pi / 180;
 constexpr double kMostLift_m = 0.12;
 constexpr double kDistinct_px = 4;
-// By chance 3 in 100 features near a projected point agree with it, weighted by likeness: a dense
+// By chance 4 in 100 features near a projected point agree with it, weighted by likeness: a dense
 // map gives more wrong inliers than a sparse one. Measured with priors at false places.
-constexpr double kChance = 0.03, kLeastSure = 6;
+constexpr double kChance = 0.04, kLeastSure = 5.4;
 constexpr double kMostSigma_m = 0.065;  // a vaguer pose is of no use
 // Errors of the map itself, which no number of inliers averages out.
 constexpr double kMapSigma_m = 0.01;
