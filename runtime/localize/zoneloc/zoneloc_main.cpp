@@ -6,6 +6,7 @@
 #include "platform/command_line/command_line.hpp"
 #include "platform/signals.hpp"
 #include "platform/version/version.hpp"
+#include "runtime/localize/zoneloc/add_query.hpp"
 #include "runtime/localize/zoneloc/add_run.hpp"
 #include "runtime/protocol/messages.hpp"
 
@@ -23,6 +24,8 @@ int main(int argc, char** argv) {
   std::function<int()> command;
   zonepack::localize::RunArguments run;
   zonepack::localize::add_run(app, run, command);
+  zonepack::localize::QueryArguments query;
+  zonepack::localize::add_query(app, query, command);
   try {
     zonepack::parse_command_line(app, argc, argv);
   } catch (const CLI::ParseError& error) {
