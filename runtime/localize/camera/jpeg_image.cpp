@@ -101,7 +101,7 @@ Outcome<void> decode_jpeg(ByteSpan bytes, const std::string& name, GreyImage& in
                                       : refused_image(name, "JPEG", "is damaged", decoder.message);
   };
   if (!begin_jpeg(decoder, bytes)) return refused();
-  if (const auto fits = check_image_size(name, decoder.jpeg.image_width, decoder.jpeg.image_height);
+  if (auto fits = check_image_size(name, decoder.jpeg.image_width, decoder.jpeg.image_height);
       !fits) {
     return fits;
   }

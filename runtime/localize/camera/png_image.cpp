@@ -102,7 +102,7 @@ Outcome<void> decode_png(ByteSpan bytes, const std::string& name, GreyImage& int
   if (!begin_png(decoder)) return refused();
   const std::uint32_t columns = png_get_image_width(decoder.png, decoder.info);
   const std::uint32_t lines = png_get_image_height(decoder.png, decoder.info);
-  if (const auto fits = check_image_size(name, columns, lines); !fits) return fits;
+  if (auto fits = check_image_size(name, columns, lines); !fits) return fits;
   const std::size_t width = columns, height = lines;
   const bool colour = png_get_channels(decoder.png, decoder.info) == 3;
   into.width = static_cast<int>(columns);

@@ -15,7 +15,8 @@ Eigen::Isometry3d transform_of(const RigidTransform& from) {
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) {
       to.matrix()(row, column) =
-          static_cast<double>(from[static_cast<std::size_t>(4 * row + column)]);
+          static_cast<double>(from[static_cast<std::size_t>(4) * static_cast<std::size_t>(row) +
+                                   static_cast<std::size_t>(column)]);
     }
   }
   return to;
