@@ -18,6 +18,7 @@ namespace zonepack {
 namespace {
 
 constexpr std::size_t kMostBufferBytes = std::size_t{64} << 20;
+constexpr std::size_t kMostNamed = 8;      // formats in a message
 constexpr std::uint32_t kMostListed = 64;  // formats or sizes, of a driver that never ends its list
 
 struct Known {
@@ -153,10 +154,13 @@ std::vector<std::uint32_t> Device::formats() {
   return all;
 }
 
-// "YUYV (640x480, 1280x720), MJPG (1920x1080)"
+// "YUYV (640x480, 1280x720), MJPG (1920x1080)"; of many formats the first kMostNamed.
 std::string Device::offers(const std::vector<std::uint32_t>& formats) {
   std::string text;
+  std::size_t named = 0;
   for (const std::uint32_t format : formats) {
+    if (++named > kMostNamed)
+      return text + " and " + std::to_string(formats.size() - kMostNamed) + " more";
     std::string sizes;
     for (std::uint32_t i = 0; i < kMostListed; ++i) {
       v4l2_frmsizeenum size{};
@@ -200,13 +204,18 @@ bool Device::set(const Known& known) {
 }
 
 Outcome<void> Device::choose_format() {
-  const std::vector<std::uint32_t> has = formats();
+  std::vector<std::uint32_t> has = formats();
   bool readable = false;
   for (const Known& known : kKnown) {
     if (std::find(has.begin(), has.end(), known.fourcc) == has.end()) continue;
     readable = true;
     if (set(known)) return {};
     if (errno == EBUSY) return refused("is in use by another program");
+  }
+  if (readable) {
+    std::erase_if(has, [](std::uint32_t fourcc) {
+      return std::ranges::find(kKnown, fourcc, &Known::fourcc) == kKnown.end();
+    });
   }
   const std::string wanted = size_text(static_cast<std::uint32_t>(settings_.width),
                                        static_cast<std::uint32_t>(settings_.height));

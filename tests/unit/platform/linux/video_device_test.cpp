@@ -261,6 +261,17 @@ TEST_F(VideoDeviceTest, NamesTheFormatsThatThereAre) {
                                HasSubstr("it has H264 (640x480), NV12")));
 }
 
+// vivid has 59 formats, one of them GREY.
+TEST_F(VideoDeviceTest, NamesOnlyFormatsThatAreReadHereIfThereAreSome) {
+  driver_.offers = {{V4L2_PIX_FMT_NV12, {{320, 240}}}, {V4L2_PIX_FMT_GREY, {{320, 240}}}};
+  EXPECT_THAT(refusal(), HasSubstr("it has GREY (320x240); calibrate"));
+}
+
+TEST_F(VideoDeviceTest, NamesAtMostEightFormats) {
+  driver_.offers.assign(10, {V4L2_PIX_FMT_NV12, {}});
+  EXPECT_THAT(refusal(), HasSubstr("NV12, NV12 and 2 more"));
+}
+
 TEST_F(VideoDeviceTest, RefusesTheMetadataNodeOfACamera) {
   driver_.caps = V4L2_CAP_META_CAPTURE | V4L2_CAP_STREAMING;
   EXPECT_THAT(refusal(), AllOf(HasSubstr("of \"Eye\""), HasSubstr("for metadata")));
