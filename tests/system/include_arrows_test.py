@@ -104,7 +104,8 @@ FOREIGN = {
     r"yaml-cpp/": "runtime/localize/camera runtime/settings runtime/live",
     r"Eigen/": "runtime/calibrate runtime/localize/camera runtime/localize/features runtime/localize/query"
               " runtime/localize/solve",
-    r"CLI/": "platform/command_line runtime/localize/zoneloc runtime/zoned runtime/ctl packer packer/commands packer/console",
+    r"CLI/": "platform/command_line runtime/localize/zoneloc runtime/zoned runtime/ctl packer packer/commands"
+             " packer/console",
     r"sqlite3\.h": "packer/sources",
     r"zlib\.h": "packer/sources packer/preview",
     r"nlohmann/": "packer/commands packer/console packer/inspect packer/outline packer/verify packer/zones",
