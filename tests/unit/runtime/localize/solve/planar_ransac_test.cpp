@@ -12,13 +12,13 @@ const Pose2 kPose{3, -2, 0.7};
 
 TEST(PlanarRansac, FindsThePoseFromTwoSightings) {
   const CameraModel camera = made_camera();
-  // A point straight ahead of the camera at 2 m, on the axis: (3 + 2.2 cos 0.7, -2 + 2.2 sin 0.7,
-  // 0.5) is seen at (319.5, 239.5). One on the floor, 1 m to the left and 0.5 m below it, is seen
-  // 385 / 2 = 192.5 px to the left and 385 * 0.5 / 2 = 96.25 px below.
+  // A point on the floor 2 m before the camera and 0.5 m below it, straight ahead:
+  // (3 + 2.2 cos 0.7, -2 + 2.2 sin 0.7, 0) is seen 385 * 0.5 / 2 = 96.25 px below the middle. One
+  // 1 m to the left of it is seen 385 / 2 = 192.5 px to the left.
   const double c = std::cos(0.7), s = std::sin(0.7);
   Sighting a, b;
-  a.p_map = {3 + 2.2 * c, -2 + 2.2 * s, 0.5};
-  a.px = {319.5, 239.5};
+  a.p_map = {3 + 2.2 * c, -2 + 2.2 * s, 0};
+  a.px = {319.5, 239.5 + 96.25};
   b.p_map = {3 + 2.2 * c - s, -2 + 2.2 * s + c, 0};
   b.px = {319.5 - 192.5, 239.5 + 96.25};
   b.feature = 1;
