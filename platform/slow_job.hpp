@@ -29,6 +29,9 @@ class SlowJob {
 
   bool running() const noexcept { return thread_.joinable(); }
 
+  // Waits for the work under way, whose result is lost.
+  void join() noexcept { thread_.join(); }
+
   // Makes a system call in which the work waits return EINTR.
   void interrupt() noexcept { thread_.interrupt(); }
 

@@ -171,6 +171,8 @@ void LiveRun::wait() {
 Outcome<RunSummary> LiveRun::finish(Failures& outputs) {
   guard_.watch();
   const auto controlled = control_.join();
+  guard_.waits_for("the thread that reads a new version of the map from its folder");
+  change_->stop();
   guard_.waits_for("the threads of the GPIO lines");
   lines_.stop();
   (void)notifier_.stopping();

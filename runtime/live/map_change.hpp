@@ -41,6 +41,8 @@ class MapChange {
   // Asks for a change, which begins when the one under way is over.
   void ask() noexcept { asked_ = true; }
   void turn();
+  // Waits for the thread; no change begins or goes on after that.
+  void stop() noexcept { job_.join(); }
 
  private:
   enum class Step : std::uint8_t { kNone, kPreparing, kAnnouncing, kOffered, kFreeing };

@@ -1,46 +1,90 @@
 // SPDX-License-Identifier: Apache-2.0
 // usage: hold_thread PID NAME SECONDS: one thread of a process stands still for so long, or until
 // the process is killed, as one does that waits in the kernel for a disk which does not answer; the
-// others run on.
+// others run on. A thread that is not there yet is waited for, 10 s at most, and stands still when
+// it first opens or reads a file.
 #include <dirent.h>
 #include <sys/ptrace.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
+#include <set>
 #include <string>
 
 namespace {
 
-pid_t find_thread(const std::string& process, const std::string& name) {
-  const std::string folder = "/proc/" + process + "/task";
-  DIR* const tasks = ::opendir(folder.c_str());
-  if (tasks == nullptr) return 0;
-  pid_t found = 0;
-  while (const dirent* const entry = ::readdir(tasks)) {
-    std::string told;
-    std::getline(std::ifstream(folder + "/" + entry->d_name + "/comm"), told);
-    if (told == name) found = std::atoi(entry->d_name);
-  }
+std::set<pid_t> threads_of(const std::string& process) {
+  std::set<pid_t> found;
+  DIR* const tasks = ::opendir(("/proc/" + process + "/task").c_str());
+  if (tasks == nullptr) return found;
+  while (const dirent* const entry = ::readdir(tasks)) found.insert(std::atoi(entry->d_name));
   ::closedir(tasks);
+  found.erase(0);  // . and ..
   return found;
+}
+
+pid_t find_thread(const std::string& process, const std::string& name) {
+  for (const pid_t thread : threads_of(process)) {
+    std::string told;
+    std::getline(std::ifstream("/proc/" + process + "/task/" + std::to_string(thread) + "/comm"),
+                 told);
+    if (told == name) return thread;
+  }
+  return 0;
+}
+
+// The next thread that the process makes. Looked for without a pause: it may end in a millisecond.
+pid_t wait_for_thread(const std::string& process) {
+  const std::set<pid_t> before = threads_of(process);
+  const std::time_t until = std::time(nullptr) + 10;
+  while (std::time(nullptr) < until) {
+    for (const pid_t thread : threads_of(process)) {
+      if (!before.contains(thread)) return thread;
+    }
+  }
+  return 0;
+}
+
+// From one stop of the thread to its next call of the kernel for a file. False once it has ended.
+bool run_to_a_file(pid_t thread) {
+  int status = 0;
+  for (;;) {
+    if (::ptrace(PTRACE_SYSCALL, thread, nullptr, nullptr) != 0 ||
+        ::waitpid(thread, &status, __WALL) != thread || !WIFSTOPPED(status)) {
+      return false;
+    }
+    __ptrace_syscall_info call{};
+    if (::ptrace(PTRACE_GET_SYSCALL_INFO, thread, sizeof call, &call) <= 0) return false;
+    if (call.op != PTRACE_SYSCALL_INFO_ENTRY) continue;
+    for (const long number : {SYS_openat, SYS_read, SYS_pread64}) {
+      if (static_cast<long>(call.entry.nr) == number) return true;
+    }
+  }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 4) return std::fputs("usage: hold_thread PID NAME SECONDS\n", stderr), 2;
-  const pid_t thread = find_thread(argv[1], argv[2]);
+  pid_t thread = find_thread(argv[1], argv[2]);
+  const bool comes_later = thread == 0;
+  if (comes_later) thread = wait_for_thread(argv[1]);
   if (thread == 0) return std::fprintf(stderr, "hold_thread: no thread %s\n", argv[2]), 1;
-  if (::ptrace(PTRACE_SEIZE, thread, nullptr, nullptr) != 0) {
+  if (::ptrace(PTRACE_SEIZE, thread, nullptr, PTRACE_O_TRACESYSGOOD) != 0) {
     return std::perror("hold_thread: ptrace"), 77;
   }
   int status = 0;
   if (::ptrace(PTRACE_INTERRUPT, thread, nullptr, nullptr) != 0 ||
       ::waitpid(thread, &status, __WALL) != thread) {
     return std::perror("hold_thread: stop"), 1;
+  }
+  if (comes_later && !run_to_a_file(thread)) {
+    return std::fprintf(stderr, "hold_thread: %s has ended\n", argv[2]), 1;
   }
   // A process has ended for its parent only when its traced threads are reaped.
   for (int turns = static_cast<int>(std::atof(argv[3]) * 100); turns > 0; --turns) {

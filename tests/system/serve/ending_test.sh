@@ -104,6 +104,19 @@ zoned-service the thread that serves clients
 zoned-control the control thread
 THREADS
 
+# So does the thread that takes a new version of the map, which lives as long as that takes.
+start --json run.json --budget 8MiB
+"$bin/hold_thread" "$zoned" zoned-map 60 &
+holding=$!
+sleep 0.5
+"$bin/zonepack" build --db "$data/hospital-small.db" --zones "$data/zones.geojson" --out map --payload features \
+  --max-zone-bytes 300KiB >/dev/null 2>&1
+kill -HUP "$zoned"
+sleep 1
+ends 1 9
+says "without waiting longer for the thread that reads a new version of the map"
+wait "$holding" || fail "hold_thread zoned-map: exit code $?"
+
 # The saved state's folder and the flight recorder do not follow or wait for what is not theirs.
 rm -rf state && mkdir state
 echo precious >target
