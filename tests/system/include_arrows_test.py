@@ -62,13 +62,12 @@ ARROWS = {
     "runtime/localize/features": "platform platform/base runtime/localize/camera",
     "runtime/localize/solve": "runtime/localize/camera runtime/odometry",
     "runtime/localize/query": "platform platform/base runtime/client runtime/localize/camera"
-                              " runtime/localize/features runtime/localize/solve runtime/map"
-                              " runtime/odometry runtime/pack_format runtime/pack_format/file",
+                              " runtime/localize/features runtime/localize/solve runtime/map runtime/odometry"
+                              " runtime/pack_format runtime/pack_format/file",
     "runtime/localize/explain": "platform platform/base runtime/localize/camera runtime/localize/query"
                                 " runtime/localize/solve runtime/map runtime/odometry runtime/report",
-    "runtime/localize/run": "platform platform/base runtime/client runtime/live runtime/localize/camera"
-                            " runtime/localize/query runtime/odometry runtime/protocol runtime/run"
-                            " runtime/settings",
+    "runtime/localize/run": "platform platform/base runtime/client runtime/live/histogram.hpp runtime/localize/camera"
+                            " runtime/localize/query runtime/odometry runtime/protocol runtime/run runtime/settings",
     "runtime/localize/zoneloc": "platform platform/command_line platform/version runtime/localize/explain"
                                 " runtime/localize/run runtime/protocol",
 
@@ -101,15 +100,15 @@ FOREIGN = {
     r"lz4": "runtime/pack_format/file runtime/recording packer/build packer/encode",
     r"xxhash": "runtime/pack_format/file",
     r"sodium": "runtime/pack_format/file runtime/run",
-    r"yaml-cpp/": "runtime/localize/camera runtime/settings runtime/live",
-    r"Eigen/": "runtime/calibrate runtime/localize/camera runtime/localize/features runtime/localize/query"
-              " runtime/localize/solve",
-    r"CLI/": "platform/command_line runtime/localize/zoneloc runtime/zoned runtime/ctl packer packer/commands"
+    r"yaml-cpp/": "runtime/settings runtime/live runtime/localize/camera",
+    r"Eigen/": "runtime/calibrate runtime/localize/camera runtime/localize/features runtime/localize/solve runtime/localize/query",
+    r"CLI/": "platform/command_line runtime/zoned runtime/ctl runtime/localize/zoneloc packer packer/commands"
              " packer/console",
     r"sqlite3\.h": "packer/sources",
     r"zlib\.h": "packer/sources packer/preview",
     r"nlohmann/": "packer/commands packer/console packer/inspect packer/outline packer/verify packer/zones",
     r"opencv": "runtime/localize/features",
+    r"(jpeglib|jerror|png)\.h": "runtime/localize/camera runtime/localize/explain",
 }
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^">]+)[">]', re.MULTILINE)

@@ -10,12 +10,13 @@
 namespace zonepack::localize {
 namespace {
 
-Eigen::Isometry3d isometry(const RigidTransform& from) {
+Eigen::Isometry3d transform_of(const RigidTransform& from) {
   Eigen::Isometry3d to = Eigen::Isometry3d::Identity();
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) {
       to.matrix()(row, column) =
-          static_cast<double>(from[static_cast<std::size_t>(4 * row + column)]);
+          static_cast<double>(from[static_cast<std::size_t>(4) * static_cast<std::size_t>(row) +
+                                   static_cast<std::size_t>(column)]);
     }
   }
   return to;
@@ -39,7 +40,7 @@ bool ResidentFeatures::list(ZonesInMemory& zones, ZoneId id, Zone& zone) {
     entries.reserve(signatures.size());
     for (std::uint32_t i = 0; i < signatures.size(); ++i) {
       if (const auto pose = signatures[i].T_map_base()) {
-        entries.push_back({isometry(*pose), i, false, nullptr});
+        entries.push_back({transform_of(*pose), i, false, nullptr});
       }
     }
   });
