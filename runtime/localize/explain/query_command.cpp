@@ -28,14 +28,15 @@ constexpr double kDegree = std::numbers::pi / 180;
 // How well a person knows where the robot stands: one standard deviation.
 constexpr double kNear_m = 0.3, kNear_rad = 5 * kDegree;
 
-std::string number(double value, int digits) {
+std::string digits_of(double value, int digits) {
   char text[40];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   return text;
 }
 
 std::string pose_text(const Pose2& pose) {
-  return number(pose.x_m, 3) + "," + number(pose.y_m, 3) + "," + number(pose.yaw_rad / kDegree, 2);
+  return digits_of(pose.x_m, 3) + "," + digits_of(pose.y_m, 3) + "," +
+         digits_of(pose.yaw_rad / kDegree, 2);
 }
 
 struct Answer {
@@ -56,15 +57,16 @@ std::string json_of(const Answer& answer) {
   };
   add("reason", json_quoted(to_string(r.reason)));
   add("why", json_quoted(answer.why));
-  const auto degrees = [](double rad) { return number(rad / kDegree, 3); };
+  const auto degrees = [](double rad) { return digits_of(rad / kDegree, 3); };
   add("pose", !r.found ? "null"
-                       : "{\"x_m\": " + number(r.pose.x_m, 4) + ", \"y_m\": " +
-                             number(r.pose.y_m, 4) + ", \"yaw_deg\": " + degrees(r.pose.yaw_rad) +
-                             ", \"z_m\": " + number(r.T_map_base.translation().z(), 4) + "}");
+                       : "{\"x_m\": " + digits_of(r.pose.x_m, 4) +
+                             ", \"y_m\": " + digits_of(r.pose.y_m, 4) +
+                             ", \"yaw_deg\": " + degrees(r.pose.yaw_rad) +
+                             ", \"z_m\": " + digits_of(r.T_map_base.translation().z(), 4) + "}");
   const Covariance2& c = r.covariance;
   add("sigma", !r.found ? "null"
-                        : "{\"x_m\": " + number(std::sqrt(c.xx), 4) +
-                              ", \"y_m\": " + number(std::sqrt(c.yy), 4) +
+                        : "{\"x_m\": " + digits_of(std::sqrt(c.xx), 4) +
+                              ", \"y_m\": " + digits_of(std::sqrt(c.yy), 4) +
                               ", \"yaw_deg\": " + degrees(std::sqrt(c.yaw_yaw)) + "}");
   add("features", std::to_string(r.features));
   add("matches", std::to_string(r.matches));
@@ -73,7 +75,7 @@ std::string json_of(const Answer& answer) {
   add("needed", std::to_string(answer.asked.needed));
   add("cells", std::to_string(r.cells));
   add("visible", std::to_string(r.visible));
-  add("residual_px", number(r.residual_px, 3));
+  add("residual_px", digits_of(r.residual_px, 3));
   add("signatures", std::to_string(r.signatures));
   add("best_signature", r.found ? std::to_string(r.best) : "null");
   add("best_zone", r.found ? json_quoted(answer.best_zone) : "null");
@@ -81,12 +83,12 @@ std::string json_of(const Answer& answer) {
                      ? "null"
                      : "{\"signature\": " + std::to_string(r.nearest) +
                            ", \"zone\": " + json_quoted(answer.asked.nearest_zone) +
-                           ", \"distance_m\": " + number(r.nearest_m, 3) +
+                           ", \"distance_m\": " + digits_of(r.nearest_m, 3) +
                            ", \"turned_deg\": " + degrees(r.nearest_turn_rad) + "}");
-  std::string stages = "{\"all\": " + number(static_cast<double>(r.cpu_total_ns) / 1e6, 3);
+  std::string stages = "{\"all\": " + digits_of(static_cast<double>(r.cpu_total_ns) / 1e6, 3);
   for (std::size_t i = 0; i < kStages; ++i) {
     stages += std::string(", \"") + to_string(static_cast<Stage>(i)) +
-              "\": " + number(static_cast<double>(r.cpu_ns[i]) / 1e6, 3);
+              "\": " + digits_of(static_cast<double>(r.cpu_ns[i]) / 1e6, 3);
   }
   add("query_ms", stages + "}");
   return out + "\n}\n";
@@ -97,8 +99,8 @@ std::string text_of(const Answer& answer) {
   std::string out;
   if (r.accepted) {
     out = pose_text(r.pose) + " (x, y in metres, yaw in degrees), +- " +
-          number(100 * position_sigma_m(r.covariance), 1) + " cm and " +
-          number(std::sqrt(r.covariance.yaw_yaw) / kDegree, 2) + " degrees, in sight of " +
+          digits_of(100 * position_sigma_m(r.covariance), 1) + " cm and " +
+          digits_of(std::sqrt(r.covariance.yaw_yaw) / kDegree, 2) + " degrees, in sight of " +
           answer.best_zone + "\n";
   } else {
     out = std::string("no pose: ") + to_string(r.reason) + "\n";

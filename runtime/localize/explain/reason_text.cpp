@@ -12,9 +12,9 @@
 namespace zonepack::localize {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kDegreeInRad = std::numbers::pi / 180;
 
-std::string number(double value, int digits) {
+std::string rounded(double value, int digits) {
   char text[40];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   return text;
@@ -29,8 +29,8 @@ std::string nearest_text(const QueryResult& result, const QueryAsked& asked) {
   if (!asked.with_prior || result.nearest == 0) return "";
   return "; the nearest signature (" + std::to_string(result.nearest) +
          (asked.nearest_zone.empty() ? "" : " in " + asked.nearest_zone) + ", " +
-         number(result.nearest_m, 1) + " m away) looks " +
-         number(result.nearest_turn_rad / kDegree, 0) + " degrees to the side";
+         rounded(result.nearest_m, 1) + " m away) looks " +
+         rounded(result.nearest_turn_rad / kDegreeInRad, 0) + " degrees to the side";
 }
 
 std::string features_text(int count) {
@@ -74,16 +74,16 @@ std::string reason_text(const QueryResult& result, const QueryAsked& asked) {
              std::to_string(asked.needed_cells) + " parts of the image needed" +
              nearest_text(result, asked);
     case Reason::kFarFromPrior:
-      return inliers + " matches agree on " + number(result.pose.x_m, 2) + "," +
-             number(result.pose.y_m, 2) + "," + number(result.pose.yaw_rad / kDegree, 1) +
+      return inliers + " matches agree on " + rounded(result.pose.x_m, 2) + "," +
+             rounded(result.pose.y_m, 2) + "," + rounded(result.pose.yaw_rad / kDegreeInRad, 1) +
              ", which is too far from where the robot was said to be";
     case Reason::kNotLevel:
       return inliers + " matches agree on a pose " +
-             number(result.T_map_base.translation().z() * 100, 0) +
+             rounded(result.T_map_base.translation().z() * 100, 0) +
              " cm high or tilted by more than 6 degrees: check the calibration's local_transform";
     case Reason::kUnsure:
       return inliers + " matches agree, but leave the position open by " +
-             number(100 * std::sqrt(std::max(result.covariance.xx, result.covariance.yy)), 0) +
+             rounded(100 * std::sqrt(std::max(result.covariance.xx, result.covariance.yy)), 0) +
              " cm (one standard deviation)";
     case Reason::kRival:
       return inliers + " matches agree, but nearly as many on another place";
