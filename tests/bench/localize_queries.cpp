@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// usage: localize_queries MAP MISSION [OPTION=VALUE...]: one fix for each image of a mission, from a
-// prior that is the truth with noise, every zone resident.
+// usage: localize_queries MAP MISSION [OPTION=VALUE...]: one fix for each image of a mission, from
+// a prior that is the truth with noise, every zone resident.
 //
 // MISSION holds rgb.txt, calibration.yaml and base_groundtruth.txt. Options: position=0.3 (metres,
 // standard deviation along each axis), yaw=5 (degrees), seed=1, false=N (that many trials with a
@@ -127,9 +127,9 @@ Pose2 in_map_frame(const std::vector<MapError>& errors, const Pose2& truth) {
 int main(int argc, char** argv) {
   if (argc < 3) stop("usage: localize_queries MAP MISSION [OPTION=VALUE...]");
   std::map<std::string, std::string> options{
-      {"position", "0.3"}, {"yaw", "5"},    {"seed", "1"},      {"false", "0"}, {"roll", "0"},
-      {"pitch", "0"},      {"z", "0"},      {"change", "none"}, {"every", "1"}, {"lost", "0"},
-      {"list", "0"},       {"needed", "15"}};
+      {"position", "0.3"}, {"yaw", "5"},   {"seed", "1"}, {"false", "0"},
+      {"roll", "0"},       {"pitch", "0"}, {"z", "0"},    {"change", "none"},
+      {"every", "1"},      {"lost", "0"},  {"list", "0"}, {"needed", "15"}};
   for (int i = 3; i < argc; ++i) {
     const std::string word = argv[i];
     const std::size_t equal = word.find('=');
@@ -183,7 +183,8 @@ int main(int argc, char** argv) {
   for (std::size_t i = 0; i < images->size(); i += every) {
     const auto image = read_image((*images)[i].file);
     if (!image) stop(image.error().message);
-    const auto seen = test_support::changed(*image, options["change"], static_cast<std::uint32_t>(i));
+    const auto seen =
+        test_support::changed(*image, options["change"], static_cast<std::uint32_t>(i));
     if (!seen) stop("change: unknown word");
     const Pose2 true_pose = truth_at(truth, static_cast<double>((*images)[i].stamp_ns) / 1e9);
     QueryPrior prior{true_pose, covariance};
@@ -211,12 +212,14 @@ int main(int argc, char** argv) {
                             std::max(1e-9, position_sigma_m(result.covariance)));
     }
     if (number("list") != 0) {
-      std::printf("%s %s matches %d inliers %d distinct %d cells %d visible %d of %d off %.3f m "
-                  "%.2f deg map %.3f rms %.2f\n",
-                  (*images)[i].file.substr((*images)[i].file.rfind('/') + 1).c_str(),
-                  to_string(result.reason), result.matches, result.inliers, result.distinct,
-                  result.cells, result.visible, result.features, result.found ? off : -1,
-                  turned / kDegree, distance(result.pose, here), result.residual_px);
+      std::printf(
+          "%s %s matches %d inliers %d distinct %d cells %d visible %d of %d off %.3f m "
+          "%.2f deg map %.3f rms %.2f sure %.1f sigma %.3f\n",
+          (*images)[i].file.substr((*images)[i].file.rfind('/') + 1).c_str(),
+          to_string(result.reason), result.matches, result.inliers, result.distinct, result.cells,
+          result.visible, result.features, result.found ? off : -1, turned / kDegree,
+          distance(result.pose, here), result.residual_px, result.sure,
+          position_sigma_m(result.covariance));
     }
     if (number("false") > 0) {
       if (auto features = localizer.detect(*seen)) {
@@ -225,14 +228,14 @@ int main(int argc, char** argv) {
       }
     }
   }
-  std::printf("%-34s images %d right %.3f wrong %d  truth cm %.1f %.1f max %.1f  map cm %.2f %.2f  "
-              "yaw deg %.2f  off/sigma %.1f  ms %.1f %.1f",
-              (mission.substr(mission.rfind('/') + 1) + " " + options["change"]).c_str(), total,
-              static_cast<double>(right) / total, wrong, 100 * percentile(to_truth, 0.5),
-              100 * percentile(to_truth, 0.95), 100 * percentile(to_truth, 1),
-              100 * percentile(to_map, 0.5), 100 * percentile(to_map, 0.95),
-              percentile(yaw_error, 0.95), percentile(sigma_ratio, 0.95), percentile(all_ms, 0.5),
-              percentile(all_ms, 0.95));
+  std::printf(
+      "%-34s images %d right %.3f wrong %d  truth cm %.1f %.1f max %.1f  map cm %.2f %.2f  "
+      "yaw deg %.2f  off/sigma %.1f  ms %.1f %.1f",
+      (mission.substr(mission.rfind('/') + 1) + " " + options["change"]).c_str(), total,
+      static_cast<double>(right) / total, wrong, 100 * percentile(to_truth, 0.5),
+      100 * percentile(to_truth, 0.95), 100 * percentile(to_truth, 1),
+      100 * percentile(to_map, 0.5), 100 * percentile(to_map, 0.95), percentile(yaw_error, 0.95),
+      percentile(sigma_ratio, 0.95), percentile(all_ms, 0.5), percentile(all_ms, 0.95));
   for (std::size_t k = 0; k < kStages; ++k) {
     std::printf(" %s %.1f", to_string(static_cast<Stage>(k)), percentile(stage_ms[k], 0.5));
   }
@@ -248,12 +251,15 @@ int main(int argc, char** argv) {
                      std::atan2(place.T_map_base.linear()(1, 0), place.T_map_base.linear()(0, 0))};
       if (distance(at, kept_truth[image]) < 5) continue;
       ++trial;
-      const QueryResult result = localizer.locate(kept[image], resident, QueryPrior{at, covariance});
+      const QueryResult result =
+          localizer.locate(kept[image], resident, QueryPrior{at, covariance});
       if (result.accepted) {
         ++accepted;
-        std::printf("accepted at %.2f %.2f, %d distinct in %d cells, %d of %d visible\n",
-                    result.pose.x_m, result.pose.y_m, result.distinct, result.cells, result.visible,
-                    result.features);
+        std::printf(
+            "accepted at %.2f %.2f, %d distinct in %d cells, %d of %d visible sure %.1f sigma "
+            "%.3f\n",
+            result.pose.x_m, result.pose.y_m, result.distinct, result.cells, result.visible,
+            result.features, result.sure, position_sigma_m(result.covariance));
       }
     }
     std::printf("false priors: %d of %d accepted\n", accepted, trials);

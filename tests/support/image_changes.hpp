@@ -82,7 +82,8 @@ inline GreyImage motion_blur(const GreyImage& image, int px) {
 // A grey box over the middle that covers this share of the image.
 inline GreyImage cover(GreyImage image, double share) {
   const double side = std::sqrt(share);
-  const int wide = static_cast<int>(image.width * side), high = static_cast<int>(image.height * side);
+  const int wide = static_cast<int>(image.width * side),
+            high = static_cast<int>(image.height * side);
   const int left = (image.width - wide) / 2, top = (image.height - high) / 2;
   for (int y = top; y < top + high; ++y) {
     for (int x = left; x < left + wide; ++x) {

@@ -9,7 +9,7 @@ import re
 import subprocess
 import sys
 
-PROGRAMS = ("zonepack", "zoned", "zonectl")
+PROGRAMS = ("zonepack", "zoned", "zonectl", "zoneloc")
 FILES = {"FILE", "LOG", "DB", "PATH"}  # what an option takes, and so what completes it
 FOLDERS = {"DIR", "MAP"}
 

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
+#include <utility>
 #include <vector>
 
 #include "platform/base/require.hpp"
@@ -69,16 +70,25 @@ ImageFeatures FeatureDetector::detect(const GreyImage& image, const CameraModel&
   const std::size_t count = cv_->keypoints.size();
   ZP_REQUIRE(count == 0 || cv_->descriptors.cols * static_cast<int>(cv_->descriptors.elemSize()) ==
                                static_cast<int>(out.descriptor_bytes));
+  std::vector<std::pair<Eigen::Vector2f, int>> order;
+  order.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector2f seen(cv_->keypoints[i].pt.x, cv_->keypoints[i].pt.y);
+    order.emplace_back(
+        camera.distorted() ? camera.undistort(seen.cast<double>()).cast<float>().eval() : seen,
+        static_cast<int>(i));
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first.x() < b.first.x(); });
   out.seen_px.reserve(count);
   out.px.reserve(count);
   out.descriptors.resize(count * out.descriptor_bytes);
   for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Vector2f seen(cv_->keypoints[i].pt.x, cv_->keypoints[i].pt.y);
-    out.seen_px.push_back(seen);
-    out.px.push_back(camera.distorted() ? camera.undistort(seen.cast<double>()).cast<float>().eval()
-                                        : seen);
+    const cv::KeyPoint& keypoint = cv_->keypoints[static_cast<std::size_t>(order[i].second)];
+    out.seen_px.emplace_back(keypoint.pt.x, keypoint.pt.y);
+    out.px.push_back(order[i].first);
     std::memcpy(out.descriptors.data() + i * out.descriptor_bytes,
-                cv_->descriptors.ptr(static_cast<int>(i)), out.descriptor_bytes);
+                cv_->descriptors.ptr(order[i].second), out.descriptor_bytes);
   }
   out.detect_ns = found - begin;
   out.describe_ns = thread_cpu_ns() - found;

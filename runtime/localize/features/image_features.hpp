@@ -9,7 +9,7 @@
 
 namespace zonepack::localize {
 
-// The features of an image: where they are, and what they look like.
+// The features of an image: where they are, and what they look like. Sorted by px.x().
 struct ImageFeatures {
   int width = 0, height = 0;
   std::int64_t stamp_ns = 0;

@@ -19,6 +19,8 @@ const char* to_string(Reason reason) noexcept {
       return "few_matches";
     case Reason::kFewInliers:
       return "few_inliers";
+    case Reason::kChance:
+      return "chance";
     case Reason::kGathered:
       return "gathered";
     case Reason::kFarFromPrior:

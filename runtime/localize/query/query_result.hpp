@@ -27,13 +27,14 @@ enum class Reason : std::uint8_t {
   kNotInView,     // signatures are near, but none looked where the camera looks
   kFewMatches,    // too few features look alike
   kFewInliers,    // they do not agree on a pose
+  kChance,        // no more agree, and no more alike, than chance would give
   kGathered,      // they agree, in one part of the image only
   kFarFromPrior,  // they agree on a pose that the prior excludes
   kNotLevel,      // they agree on a pose that is tilted or off the floor
   kUnsure,        // the pose's covariance is too wide to be of use
   kRival,         // another place explains the image about as well
 };
-inline constexpr std::size_t kReasons = 12;
+inline constexpr std::size_t kReasons = 13;
 // As in the JSON: "accepted", "wrong_size", "no_features" …
 const char* to_string(Reason reason) noexcept;
 
@@ -63,6 +64,7 @@ struct QueryResult {
   int matches = 0;          // of the pass that counts
   int inliers = 0;          // matches that the pose explains
   int distinct = 0;         // inliers of distinct features of the image at distinct pixels
+  double sure = 0;          // the distinct ones, each by how alike its descriptors are, 0 to 1
   int cells = 0;            // of the 4x4 of the image that hold an inlier
   int visible = 0;          // features of the image with a projected map point within 8 px
   int signatures = 0;       // candidates that were looked at

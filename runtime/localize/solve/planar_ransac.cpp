@@ -72,6 +72,28 @@ Score score_of(std::span<const Sighting> sightings, const CameraModel& camera,
   return score;
 }
 
+// Takes a pose among the best; false: it is none of them, or close to a better one.
+bool keep(const PlanarPose& pose, const RansacOptions& options, std::vector<PlanarPose>& best) {
+  const auto close = [&](const PlanarPose& other) {
+    return std::hypot(pose.pose.x_m - other.pose.x_m, pose.pose.y_m - other.pose.y_m) <
+               options.apart_m &&
+           std::abs(short_way(pose.pose.yaw_rad - other.pose.yaw_rad)) < options.apart_rad;
+  };
+  for (const PlanarPose& other : best) {
+    if (other.score >= pose.score && close(other)) return false;
+  }
+  std::erase_if(best, close);
+  if (best.size() >= options.most_poses) {
+    if (best.back().score >= pose.score) return false;
+    best.pop_back();
+  }
+  const auto place =
+      std::upper_bound(best.begin(), best.end(), pose,
+                       [](const PlanarPose& a, const PlanarPose& b) { return a.score > b.score; });
+  best.insert(place, pose);
+  return true;
+}
+
 }  // namespace
 
 std::optional<Pose2> pose_of_two(const Sighting& a, const Sighting& b, const CameraModel& camera,
@@ -127,10 +149,10 @@ std::optional<Pose2> pose_of_two(const Sighting& a, const Sighting& b, const Cam
   return pose;
 }
 
-std::optional<PlanarPose> find_planar(std::span<const Sighting> sightings,
-                                      const CameraModel& camera, double floor_z_m,
-                                      const PoseGate& gate, const RansacOptions& options) {
-  if (sightings.size() < 2) return std::nullopt;
+std::vector<PlanarPose> find_planar(std::span<const Sighting> sightings, const CameraModel& camera,
+                                    double floor_z_m, const PoseGate& gate,
+                                    const RansacOptions& options) {
+  if (sightings.size() < 2) return {};
   Random random(options.seed);
   const double threshold2 = options.threshold_px * options.threshold_px;
   const Eigen::Isometry3d T_camera_base = camera.T_base_camera.inverse();
@@ -138,13 +160,14 @@ std::optional<PlanarPose> find_planar(std::span<const Sighting> sightings,
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     features += i == 0 || sightings[i].feature != sightings[i - 1].feature ? 1 : 0;
   }
-  std::optional<PlanarPose> best;
+  std::vector<PlanarPose> best;  // best first, and apart
   int needed = options.iterations;
   for (int i = 0; i < needed; ++i) {
     const Sighting& a = sightings[random.below(sightings.size())];
     const Sighting& b = sightings[random.below(sightings.size())];
     if (a.feature == b.feature || (a.px - b.px).squaredNorm() < 20 * 20) continue;
-    const auto pose = pose_of_two(a, b, camera, floor_z_m, best ? best->pose : gate.centre);
+    const auto pose =
+        pose_of_two(a, b, camera, floor_z_m, best.empty() ? gate.centre : best.front().pose);
     if (!pose ||
         std::hypot(pose->x_m - gate.centre.x_m, pose->y_m - gate.centre.y_m) > gate.most_m ||
         std::abs(short_way(pose->yaw_rad - gate.centre.yaw_rad)) > gate.most_yaw_rad) {
@@ -152,12 +175,11 @@ std::optional<PlanarPose> find_planar(std::span<const Sighting> sightings,
     }
     const Score score =
         score_of(sightings, camera, T_camera_base * lift(*pose, floor_z_m).inverse(), threshold2);
-    if (best && score.sum <= best->score) continue;
-    best = PlanarPose{*pose, score.sum, score.features};
+    if (!keep({*pose, score.sum, score.features}, options, best)) continue;
     // As often as finds two right ones with 99.9 %, were the sightings as good as this pose says.
-    const double share = static_cast<double>(score.features) / static_cast<double>(features);
+    const double share = static_cast<double>(best.front().features) / static_cast<double>(features);
     const double miss = std::log(1 - std::min(0.999, share * share * 0.5));
-    needed = std::min(options.iterations, std::max(60, static_cast<int>(-6.9 / miss)));
+    needed = std::min(options.iterations, std::max(options.least, static_cast<int>(-6.9 / miss)));
   }
   return best;
 }

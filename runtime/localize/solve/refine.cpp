@@ -62,7 +62,7 @@ void add_sightings(std::span<const Sighting> sightings, const CameraModel& camer
     Eigen::Matrix<double, 2, 6> J;
     J.leftCols<3>() = -px_by_base * R_base_map;
     J.rightCols<3>() = px_by_base * cross(p_base);
-    normal.add<2>(J, r, root * root / (sigma_px * sigma_px));
+    normal.add<2>(J, r, sighting.weight * root * root / (sigma_px * sigma_px));
   }
 }
 

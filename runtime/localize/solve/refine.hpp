@@ -9,11 +9,12 @@
 
 namespace zonepack::localize {
 
-// A robot drives on a floor, nearly: standard deviations of its height and tilt.
+// A robot drives on a floor, nearly: standard deviations of its height and tilt. Wide enough for a
+// mount that is a degree off, and narrow enough to help where the points lie on one side.
 struct PlanePrior {
   double floor_z_m = 0;
-  double sigma_z_m = 0.03;
-  double sigma_tilt_rad = 3 * 3.14159265358979 / 180;
+  double sigma_z_m = 0.01;
+  double sigma_tilt_rad = 0.7 * 3.14159265358979 / 180;
 };
 
 struct RefineOptions {

@@ -15,6 +15,7 @@ struct Sighting {
   Eigen::Vector3d p_map;
   Eigen::Vector2d px;                    // as an ideal pinhole camera sees it
   std::uint32_t feature = 0;             // of the image
+  double weight = 1;                     // how sure the match is
   std::uint32_t signature = 0, row = 0;  // of the map: place in the list of candidates, feature
 };
 

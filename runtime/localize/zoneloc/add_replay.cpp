@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/localize/zoneloc/replay_options.hpp"
+#include "runtime/localize/zoneloc/add_replay.hpp"
 
 #include <string>
 
