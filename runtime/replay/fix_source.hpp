@@ -22,8 +22,8 @@ class FixSource {
  public:
   virtual ~FixSource() = default;
 
-  // Adds fixes. Each has a received_ns after moment.now_ns and enters at the first cycle that is not
-  // before it, after those that were added earlier for the same time: a file of the same fixes
+  // Adds fixes. Each has a received_ns after moment.now_ns and enters at the first cycle that is
+  // not before it, after those that were added earlier for the same time: a file of the same fixes
   // gives the same run.
   virtual void after_cycle(const FixMoment& moment, std::vector<PoseCorrection>& fixes) = 0;
 };

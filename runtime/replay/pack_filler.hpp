@@ -21,7 +21,8 @@ class PackFiller final : public ZoneFiller {
   Result<void> fill(ZoneId zone, std::span<const SlotIndex> slots) override;
   void use(const Catalog& catalog) override;
 
-  // Where the chunks of a zone lie in the arena since it was last loaded; until others use its slots.
+  // Where the chunks of a zone lie in the arena since it was last loaded; until others use its
+  // slots.
   const std::vector<ChunkRef>& chunks(ZoneId zone) const noexcept { return chunks_[zone]; }
 
   // A complete message for each zone whose pack could not be loaded, once.

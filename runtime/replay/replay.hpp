@@ -30,8 +30,8 @@ struct ReplayInput {
   CycleConfig cycle{};
   std::uint32_t most_frames = 64;  // taken from the bus in one cycle
   MapTerms terms{};
-  std::string events_path{};  // empty: none
-  bool load_packs = true;     // false: zones are accounted for, no pack is read
+  std::string events_path{};        // empty: none
+  bool load_packs = true;           // false: zones are accounted for, no pack is read
   FixSource* fixes = nullptr;       // computes corrections while it runs
   RunObserver* observer = nullptr;  // watches
 };

@@ -33,8 +33,7 @@ CameraLoop::CameraLoop(std::vector<LoopImage> images, ImageFinder find, const Op
 void CameraLoop::after_cycle(const FixMoment& moment, std::vector<PoseCorrection>& fixes) {
   if (!start_ns_) {
     start_ns_ = moment.now_ns;
-    while (next_ < images_.size() &&
-           images_[next_].stamp_ns < moment.now_ns - kBeforeStart_ns) {
+    while (next_ < images_.size() && images_[next_].stamp_ns < moment.now_ns - kBeforeStart_ns) {
       ++next_;
     }
   }
@@ -43,7 +42,8 @@ void CameraLoop::after_cycle(const FixMoment& moment, std::vector<PoseCorrection
     found_ns_ = moment.now_ns;
     found_after_views_ = views_.size();
   }
-  while (next_ < images_.size() && images_[next_].stamp_ns <= moment.now_ns) {
+  while (next_ < images_.size() &&
+         images_[next_].stamp_ns + options_.latency_ns / 2 <= moment.now_ns) {
     look(images_[next_++], moment, fixes);
     if (tell_) tell_(next_, images_.size());
   }

@@ -10,7 +10,7 @@
 
 #include "platform/base/failure.hpp"
 #include "runtime/localize/query/query_result.hpp"
-#include "runtime/localize/replay/resident_features.hpp"
+#include "runtime/localize/replay/features_in_reach.hpp"
 #include "runtime/replay/fix_source.hpp"
 
 namespace zonepack::localize {
@@ -18,7 +18,7 @@ namespace zonepack::localize {
 // An image of a recorded drive. The log's clock may be set on the way: frames are on the clock of
 // the first one, files keep the stamps of the log as it stands.
 struct LoopImage {
-  std::int64_t stamp_ns = 0;          // on the clock of the cycles
+  std::int64_t stamp_ns = 0;           // on the clock of the cycles
   std::int64_t recorded_stamp_ns = 0;  // as in the list of images
   std::string file;
 };
@@ -49,7 +49,9 @@ struct LoopView {
 class CameraLoop final : public FixSource {
  public:
   struct Options {
-    std::int64_t latency_ns = 0;         // from an image's stamp to its fix
+    // From an image's stamp to its fix. The query is made half-way: the image has to reach the
+    // localizer, and the fix the robot.
+    std::int64_t latency_ns = 0;
     std::uint32_t descriptor_bytes = 0;  // of the map's features
   };
   // `images` in order of time.
@@ -76,7 +78,7 @@ class CameraLoop final : public FixSource {
   std::vector<LoopImage> images_;
   ImageFinder find_;
   Options options_;
-  ResidentFeatures features_;
+  FeaturesInReach features_;
   std::function<void(std::size_t, std::size_t)> tell_;
   std::size_t next_ = 0;
   std::vector<LoopView> views_;
@@ -86,8 +88,7 @@ class CameraLoop final : public FixSource {
   std::size_t found_after_views_ = 0;
 };
 
-// The pose at an image's stamp, which is a little before the estimate's time: carried back with its
-// speeds.
+// The pose at an image's stamp, which is before the estimate's time: carried back with its speeds.
 QueryPrior prior_at(std::int64_t stamp_ns, const PoseEstimate& estimate) noexcept;
 
 }  // namespace zonepack::localize

@@ -14,8 +14,7 @@ namespace {
 std::string seconds_text(std::int64_t t_ns) {
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
   std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%lld.%09lld",
-                static_cast<long long>(t_ns / kSecond_ns),
+  std::snprintf(text.data(), text.size(), "%lld.%09lld", static_cast<long long>(t_ns / kSecond_ns),
                 static_cast<long long>(t_ns % kSecond_ns));
   return text.data();
 }

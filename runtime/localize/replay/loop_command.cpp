@@ -71,8 +71,8 @@ Outcome<void> check_size(const std::vector<ListedImage>& images, const LoopArgum
     return std::to_string(width) + "x" + std::to_string(height);
   };
   return failure(images.front().file + ": is " + size(image->width, image->height) + ", but " +
-                 arguments.calibration + " is for images of " +
-                 size(camera.width, camera.height) + "; give the calibration of this camera");
+                 arguments.calibration + " is for images of " + size(camera.width, camera.height) +
+                 "; give the calibration of this camera");
 }
 
 Outcome<LoopInputs> read_inputs(const LoopArguments& arguments) {
@@ -103,9 +103,8 @@ Outcome<LoopInputs> read_inputs(const LoopArguments& arguments) {
   for (ListedImage& image : *listed) {
     images.push_back({time.on_first_clock(image.stamp_ns), image.stamp_ns, std::move(image.file)});
   }
-  std::stable_sort(images.begin(), images.end(), [](const LoopImage& a, const LoopImage& b) {
-    return a.stamp_ns < b.stamp_ns;
-  });
+  std::stable_sort(images.begin(), images.end(),
+                   [](const LoopImage& a, const LoopImage& b) { return a.stamp_ns < b.stamp_ns; });
   return LoopInputs{std::move(*run), std::move(*map), *camera, std::move(images),
                     std::move(baseline)};
 }

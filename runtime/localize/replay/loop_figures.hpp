@@ -30,7 +30,7 @@ struct LoopFigures {
   std::size_t accepted = 0;
   // Of the accepted: within 0.5 m and 10 degrees of the truth, and not. Nothing without truth.
   std::optional<std::size_t> right, wrong;
-  double longest_gap_s = 0;             // without a fix; also before the first and after the last
+  double longest_gap_s = 0;               // without a fix; also before the first and after the last
   std::optional<Spread> fix_error_m;      // of accepted fixes, to the truth
   std::optional<Spread> fix_error_map_m;  // the same in the map's frame (MapError)
   std::optional<Spread> yaw_error_deg;    // of the pose, every cycle

@@ -147,10 +147,9 @@ std::string figures_table(const LoopFigures& f) {
                     std::to_string(f.run.budget_violations) + " cycles");
   add("query", in_words(f.query_ms, 1, 1, "ms of CPU"));
   add("peak memory", format_byte_count(f.rss_peak_bytes));
-  add("pose trusted after",
-      f.found_after_s ? std::to_string(f.found_after_views.value_or(0)) + " images, " +
-                            fixed(*f.found_after_s, 1) + " s"
-                      : "never");
+  add("pose trusted after", f.found_after_s ? std::to_string(f.found_after_views.value_or(0)) +
+                                                  " images, " + fixed(*f.found_after_s, 1) + " s"
+                                            : "never");
   add("event_log_hash", f.run.event_log_hash);
   return text;
 }

@@ -79,7 +79,8 @@ void add_replay(CLI::App& app, LoopArguments& arguments, std::function<int()>& c
        "write the event log, one JSON object a line ('-': standard output)");
   file("--json", arguments.json, "write the figures as JSON ('-': standard output)");
   file("--report", arguments.report, "draw the run with its fixes: .html, .svg or .png")
-      ->check([](const std::string& path) { return report::check_report_name(path).error().message; });
+      ->check(
+          [](const std::string& path) { return report::check_report_name(path).error().message; });
   file("--baseline", arguments.baseline,
        "RTAB-Map's own run of the same images (CSV), to draw beside ours");
   add_examples(replay,

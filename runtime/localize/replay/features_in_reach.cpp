@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/localize/replay/resident_features.hpp"
+#include "runtime/localize/replay/features_in_reach.hpp"
 
 #include <utility>
 
@@ -21,8 +21,8 @@ Eigen::Isometry3d place_of(const RigidTransform& m) {
 
 }  // namespace
 
-std::span<const MapFeatures* const> ResidentFeatures::in_reach_of(const QueryPrior& prior,
-                                                                  const ResidentZones& resident) {
+std::span<const MapFeatures* const> FeaturesInReach::in_reach_of(const QueryPrior& prior,
+                                                                 const ResidentZones& resident) {
   std::map<Key, MapFeatures> kept;
   for (const ResidentZones::Zone& zone : resident.zones()) {
     const ZoneSignatures signatures(zone.view);

@@ -18,9 +18,9 @@ namespace zonepack::localize {
 // forgotten.
 //
 // Memory: copies of the signatures in reach of the last prior.
-class ResidentFeatures {
+class FeaturesInReach {
  public:
-  explicit ResidentFeatures(std::uint32_t descriptor_bytes) : descriptor_bytes_(descriptor_bytes) {}
+  explicit FeaturesInReach(std::uint32_t descriptor_bytes) : descriptor_bytes_(descriptor_bytes) {}
 
   // By zone, then by signature. Valid until the next call.
   std::span<const MapFeatures* const> in_reach_of(const QueryPrior& prior,
