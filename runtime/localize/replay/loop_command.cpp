@@ -135,7 +135,7 @@ Outcome<void> write_figures(const LoopFigures& figures, const LoopArguments& arg
 Outcome<void> drive(const LoopArguments& arguments) {
   auto inputs = read_inputs(arguments);
   if (!inputs) return inputs.error();
-  const Settings& settings = inputs->run.settings;
+  const zonepack::Settings& settings = inputs->run.settings;
   const TruthTrack* const truth = inputs->run.truth ? &*inputs->run.truth : nullptr;
   CanLogReader log(arguments.can, settings.can.interface);
   if (const auto opened = log.open(); !opened) {
