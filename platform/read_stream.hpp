@@ -23,7 +23,7 @@ namespace zonepack {
 class ReadStream {
  public:
   static constexpr std::size_t kPieceBytes = std::size_t{64} * 1024;
-  static constexpr std::size_t kDropBytes = std::size_t{256} * 1024;
+  static constexpr std::size_t kDropBytes = std::size_t{128} * 1024;
   // What was read and not yet dropped, and the next piece; large folios may round up by a piece.
   static constexpr std::size_t kMostPageCache = kDropBytes + 3 * kPieceBytes;
 

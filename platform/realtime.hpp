@@ -14,7 +14,7 @@ struct ThreadSettings {
   const char* name = "";  // at most 15 characters, as ps and top show it
   int fifo_priority = 0;  // SCHED_FIFO 1 to 99; 0: an ordinary thread
   int cpu = -1;           // the only processor it runs on; -1: any
-  std::size_t stack_bytes = std::size_t{256} * 1024;  // present before `body` runs
+  std::size_t stack_bytes = std::size_t{128} * 1024;  // present before `body` runs
 };
 
 // A thread with a stack of a chosen size, all of it present from the start.

@@ -10,7 +10,6 @@ Result<void> SlowJob::start(Work work) {
   done_.store(false, std::memory_order_relaxed);
   ThreadSettings settings;
   settings.name = name_;
-  settings.stack_bytes = std::size_t{128} * 1024;
   Result<Thread> thread = Thread::start(settings, true, [this, work = std::move(work)] {
     result_ = work();
     done_.store(true, std::memory_order_release);

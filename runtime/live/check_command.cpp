@@ -26,7 +26,7 @@ namespace zonepack {
 namespace {
 
 constexpr ByteCount kOverhead =
-    16 * kMiB;  // runtime/README.md: what a run takes besides its budget
+    12 * kMiB;  // runtime/README.md: what a run takes besides its budget
 
 struct Row {
   enum class Kind { kGood, kWeak, kRefused };

@@ -8,7 +8,7 @@
 namespace zonepack {
 namespace {
 
-constexpr std::size_t kFramesAhead = 4096;
+constexpr std::size_t kFramesAhead = 1024;
 constexpr std::size_t kCorrectionsAhead = 256;
 constexpr std::size_t kStackBytes = std::size_t{64} * 1024;  // it parses lines, and calls little
 constexpr std::size_t kNotesOfACycle = 256;                  // far more than a cycle ever makes

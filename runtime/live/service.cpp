@@ -8,7 +8,6 @@
 namespace zonepack {
 namespace {
 
-constexpr std::size_t kStack_bytes = std::size_t{256} * 1024;
 constexpr std::int64_t kDumpEnd_ns = 2'000'000'000;
 
 }  // namespace
@@ -44,8 +43,8 @@ Outcome<void> Service::open(const ServeSettings& settings, const Seqlock<LiveSta
 Result<void> Service::start(const Notifier& notifier, std::function<std::uint64_t()> cycles) {
   if (!server_) return {};
   cycles_ = std::move(cycles);
-  auto thread = Thread::start({.name = "zoned-service", .stack_bytes = kStack_bytes}, true,
-                              [this, &notifier] { run(notifier); });
+  auto thread =
+      Thread::start({.name = "zoned-service"}, true, [this, &notifier] { run(notifier); });
   if (!thread) return thread.error();
   thread_ = std::move(thread).value();
   return {};

@@ -11,22 +11,22 @@ namespace zonepack {
 namespace {
 
 // Texts are shown on terminals.
-bool is_short(const flatbuffers::String* text, std::uint32_t most) noexcept {
+bool is_short_text(const flatbuffers::String* text, std::uint32_t most) noexcept {
   return text == nullptr || (text->size() <= most && is_plain_text(view_of(text)));
 }
 
 bool is_within_limits(const wire::Localizer& report) noexcept {
-  if (!is_short(report.camera(), LocalizerBoard::kMostCameraBytes)) return false;
+  if (!is_short_text(report.camera(), LocalizerBoard::kMostCameraBytes)) return false;
   if (report.reasons() == nullptr) return true;
   return report.reasons()->size() <= LocalizerBoard::kMostReasons &&
          std::all_of(report.reasons()->begin(), report.reasons()->end(),
                      [](const wire::FixReason* one) {
-                       return is_short(one->reason(), LocalizerBoard::kMostReasonBytes);
+                       return is_short_text(one->reason(), LocalizerBoard::kMostReasonBytes);
                      });
 }
 
-flatbuffers::Offset<wire::Localizer> copy(flatbuffers::FlatBufferBuilder& to,
-                                          const wire::Localizer& from) {
+flatbuffers::Offset<wire::Localizer> copy_report(flatbuffers::FlatBufferBuilder& to,
+                                                 const wire::Localizer& from) {
   std::vector<flatbuffers::Offset<wire::FixReason>> reasons;
   if (from.reasons() != nullptr) {
     for (const wire::FixReason* const one : *from.reasons()) {
@@ -47,7 +47,7 @@ flatbuffers::Offset<wire::Localizer> copy(flatbuffers::FlatBufferBuilder& to,
 Result<void> LocalizerBoard::take(std::uint64_t client, const wire::Localizer& report) {
   if (!is_within_limits(report)) return ErrorCode::kBadValue;
   flatbuffers::FlatBufferBuilder builder(kMostReportBytes);
-  builder.Finish(copy(builder, report));
+  builder.Finish(copy_report(builder, report));
   std::vector<std::uint8_t> bytes(builder.GetBufferPointer(),
                                   builder.GetBufferPointer() + builder.GetSize());
   const auto found = std::ranges::find(rows_, client, &Row::client);
@@ -69,7 +69,7 @@ void LocalizerBoard::gone(std::uint64_t client) noexcept {
 LocalizerRows LocalizerBoard::put(flatbuffers::FlatBufferBuilder& to) const {
   std::vector<flatbuffers::Offset<wire::Localizer>> reports;
   for (const Row& row : rows_) {
-    reports.push_back(copy(to, *flatbuffers::GetRoot<wire::Localizer>(row.report.data())));
+    reports.push_back(copy_report(to, *flatbuffers::GetRoot<wire::Localizer>(row.report.data())));
   }
   return to.CreateVector(reports);
 }

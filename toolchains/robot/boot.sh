@@ -31,7 +31,9 @@ for option in "$@"; do
     controllers-fd) devices+=(-object "can-bus,id=bus" -device "ctucan_pci,canbus0=bus,canbus1=bus") ;;
     disk)
       mke2fs -q -t ext4 "$work/disk" 64M
-      devices+=(-drive "file=$work/disk,if=none,id=disk,format=raw" -device "virtio-blk-pci,drive=disk") ;;
+      # A flush that waits for the host's own disk would take seconds of virtual time; what the guest has flushed is
+      # kept in the host's memory, which a power cut of the guest does not touch.
+      devices+=(-drive "file=$work/disk,if=none,id=disk,format=raw,cache=unsafe" -device "virtio-blk-pci,drive=disk") ;;
     *) echo "unknown option '$option'" >&2; exit 2 ;;
   esac
 done

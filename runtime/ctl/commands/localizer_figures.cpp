@@ -33,12 +33,12 @@ double share_of(const wire::Localizer& one) noexcept {
              : static_cast<double>(one.fixes_total()) / static_cast<double>(one.images_total());
 }
 
-std::string ms(std::int64_t ns) { return decimal_text(static_cast<double>(ns) / 1e6); }
+std::string ms_text(std::int64_t ns) { return decimal_text(static_cast<double>(ns) / 1e6); }
 
-std::string timing_json(const wire::Timing* timing) {
+std::string times_json(const wire::Timing* timing) {
   if (timing == nullptr || timing->count() == 0) return "null";
-  return "{\"p50\":" + ms(timing->p50()) + ",\"p99\":" + ms(timing->p99()) +
-         ",\"max\":" + ms(timing->max()) + "}";
+  return "{\"p50\":" + ms_text(timing->p50()) + ",\"p99\":" + ms_text(timing->p99()) +
+         ",\"max\":" + ms_text(timing->max()) + "}";
 }
 
 std::string reasons_json(const wire::Localizer& one) {
@@ -49,11 +49,11 @@ std::string reasons_json(const wire::Localizer& one) {
   return "{" + text + "}";
 }
 
-struct Counter {
+struct LocalizerCounter {
   const char *name, *help;
   std::uint64_t (*value)(const wire::Localizer&);
 };
-constexpr Counter kCounters[] = {
+constexpr LocalizerCounter kLocalizerCounters[] = {
     {"zoned_localizer_images_total", "Images that the localizer looked at.",
      [](const wire::Localizer& one) -> std::uint64_t { return one.images_total(); }},
     {"zoned_localizer_fixes_total", "Images with a pose that was given to zoned.",
@@ -63,24 +63,24 @@ constexpr Counter kCounters[] = {
     {"zoned_localizer_refused_total", "Images of no use: size, damage, stamp.",
      [](const wire::Localizer& one) -> std::uint64_t { return one.refused_total(); }}};
 
-std::string head(const std::string& name, const char* type, const char* help) {
+std::string family_head(const std::string& name, const char* type, const char* help) {
   return "# HELP " + name + " " + help + "\n# TYPE " + name + " " + type + "\n";
 }
 
-std::string label(const wire::Localizer& one) {
+std::string camera_label(const wire::Localizer& one) {
   return "camera=" + json_quoted(view_of(one.camera()));
 }
 
 using TimingOf = const wire::Timing* (wire::Localizer::*)() const;
 
-std::string timing_metric(const wire::Status& status, const char* name, const char* help,
-                          TimingOf timing_of) {
-  std::string text = head(name, "gauge", help);
+std::string times_metric(const wire::Status& status, const char* name, const char* help,
+                         TimingOf timing_of) {
+  std::string text = family_head(name, "gauge", help);
   each_localizer(status, [&](const wire::Localizer& one) {
     const wire::Timing* const timing = (one.*timing_of)();
     if (timing == nullptr) return;
     const auto row = [&](const char* percentile, std::int64_t ns) {
-      text += std::string(name) + "{" + label(one) + ",percentile=\"" + percentile + "\"} " +
+      text += std::string(name) + "{" + camera_label(one) + ",percentile=\"" + percentile + "\"} " +
               decimal_text(static_cast<double>(ns) / 1e9) + "\n";
     };
     row("50", timing->p50());
@@ -126,8 +126,8 @@ std::string localizers_json(const wire::Status& status) {
             ",\"share\":" + decimal_text(share_of(one)) +
             ",\"skipped\":" + std::to_string(one.skipped_total()) +
             ",\"refused\":" + std::to_string(one.refused_total()) +
-            ",\"latency_ms\":" + timing_json(one.latency()) +
-            ",\"query_ms\":" + timing_json(one.query()) + ",\"reasons\":" + reasons_json(one) + "}";
+            ",\"latency_ms\":" + times_json(one.latency()) +
+            ",\"query_ms\":" + times_json(one.query()) + ",\"reasons\":" + reasons_json(one) + "}";
   });
   return "[" + text + "]";
 }
@@ -135,26 +135,26 @@ std::string localizers_json(const wire::Status& status) {
 std::string localizer_metrics(const wire::Status& status) {
   if (status.localizers() == nullptr || status.localizers()->size() == 0) return {};
   std::string text;
-  for (const Counter& counter : kCounters) {
-    text += head(counter.name, "counter", counter.help);
+  for (const LocalizerCounter& counter : kLocalizerCounters) {
+    text += family_head(counter.name, "counter", counter.help);
     each_localizer(status, [&](const wire::Localizer& one) {
-      text += std::string(counter.name) + "{" + label(one) + "} " +
+      text += std::string(counter.name) + "{" + camera_label(one) + "} " +
               std::to_string(counter.value(one)) + "\n";
     });
   }
   const std::string none = "zoned_localizer_no_fix_total";
-  text += head(none, "counter", "Images without a pose, by reason.");
+  text += family_head(none, "counter", "Images without a pose, by reason.");
   each_localizer(status, [&](const wire::Localizer& one) {
     each_reason(one, [&](const std::string& reason, std::uint64_t images) {
-      text += none + "{" + label(one) + ",reason=" + json_quoted(reason) + "} " +
+      text += none + "{" + camera_label(one) + ",reason=" + json_quoted(reason) + "} " +
               std::to_string(images) + "\n";
     });
   });
   text +=
-      timing_metric(status, "zoned_localizer_latency_seconds",
-                    "From an image's stamp to its pose, by percentile.", &wire::Localizer::latency);
-  return text + timing_metric(status, "zoned_localizer_query_seconds",
-                              "CPU time of an image, by percentile.", &wire::Localizer::query);
+      times_metric(status, "zoned_localizer_latency_seconds",
+                   "From an image's stamp to its pose, by percentile.", &wire::Localizer::latency);
+  return text + times_metric(status, "zoned_localizer_query_seconds",
+                             "CPU time of an image, by percentile.", &wire::Localizer::query);
 }
 
 }  // namespace zonepack

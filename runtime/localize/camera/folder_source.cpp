@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kMostSleep_ns = 100'000'000;  // then the run's clock is looked at again
 
-std::string seconds(std::int64_t ns) {
+std::string seconds_text(std::int64_t ns) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3f", static_cast<double>(ns) / 1e9);
   return text;
@@ -22,9 +22,9 @@ std::string seconds(std::int64_t ns) {
 }  // namespace
 
 std::string FolderSource::not_of_this_drive(std::int64_t run_ns) const {
-  return name_ + ": its images are from " + seconds(images_.front().stamp_ns) + " to " +
-         seconds(images_.back().stamp_ns) + " s, and zoned's clock is at " + seconds(run_ns) +
-         " s; start zoned run --can log:FILE with the log of the same drive";
+  return name_ + ": its images are from " + seconds_text(images_.front().stamp_ns) + " to " +
+         seconds_text(images_.back().stamp_ns) + " s, and zoned's clock is at " +
+         seconds_text(run_ns) + " s; start zoned run --can log:FILE with the log of the same drive";
 }
 
 ImageSource::News FolderSource::next(std::int64_t until_ns, GreyImage& into) {

@@ -12,7 +12,7 @@
 namespace zonepack::localize {
 namespace {
 
-constexpr std::string_view kExpected = "expected a JPEG or a PNG of 8 bits a channel";
+constexpr std::string_view kExpectedImage = "expected a JPEG or a PNG of 8 bits a channel";
 
 bool begins_with(ByteSpan bytes, std::string_view magic) {
   return bytes.size() >= magic.size() &&
@@ -45,7 +45,7 @@ Failure refused_image(const std::string& name, std::string_view kind, std::strin
                       std::string_view detail) {
   std::string text = name + ": is a " + std::string(kind) + " that " + std::string(what);
   if (!detail.empty()) text += " (" + std::string(detail) + ")";
-  return failure(text + "; " + std::string(kExpected));
+  return failure(text + "; " + std::string(kExpectedImage));
 }
 
 Outcome<void> check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height) {
@@ -64,11 +64,11 @@ Outcome<GreyImage> decode_image(ByteSpan bytes, const std::string& name) {
   } else if (begins_with(bytes, "\x89PNG\r\n\x1A\n")) {
     decoded = decode_png(bytes, name, image);
   } else if (bytes.empty()) {
-    decoded = failure(name + ": is empty (0 bytes); " + std::string(kExpected));
+    decoded = failure(name + ": is empty (0 bytes); " + std::string(kExpectedImage));
   } else {
     const std::string kind = other_kind(bytes, name);
     decoded = failure(name + ": is " + (kind.empty() ? "no image of a known kind" : kind) + "; " +
-                      std::string(kExpected));
+                      std::string(kExpectedImage));
   }
   if (!decoded) return decoded.error();
   return image;
@@ -79,11 +79,11 @@ Outcome<GreyImage> read_image(const std::string& file) {
   if (bytes) return decode_image(*bytes, file);
   if (bytes.error().code == ErrorCode::kTooLarge) {
     return failure(file + ": has more than " + std::to_string(kMostImageBytes >> 20) + " MiB; " +
-                       std::string(kExpected),
+                       std::string(kExpectedImage),
                    ErrorCode::kTooLarge);
   }
   if (bytes.error().code == ErrorCode::kNotFound) {
-    return failure(file + ": is not there; " + std::string(kExpected), ErrorCode::kNotFound);
+    return failure(file + ": is not there; " + std::string(kExpectedImage), ErrorCode::kNotFound);
   }
   return failure(file + ": cannot be read: " + reason_text(bytes.error()), ErrorCode::kIo);
 }

@@ -21,13 +21,13 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostImages = 1'000'000;
 constexpr std::size_t kMostLineBytes = 8192;
 constexpr std::size_t kNamedFiles = 3;
-constexpr std::string_view kExpected =
+constexpr std::string_view kExpectedList =
     "expected lines of \"stamp file\", as TUM's rgb.txt has them";
-constexpr std::string_view kBetween = " \t\r,;";
+constexpr std::string_view kBetweenWords = " \t\r,;";
 
 std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = std::min(text.find_first_not_of(kBetween), text.size());
-  const std::size_t end = text.find_last_not_of(kBetween);
+  const std::size_t begin = std::min(text.find_first_not_of(kBetweenWords), text.size());
+  const std::size_t end = text.find_last_not_of(kBetweenWords);
   return end == std::string_view::npos ? std::string_view() : text.substr(begin, end - begin + 1);
 }
 
@@ -45,7 +45,7 @@ class ListReader {
     if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
     line = trimmed(line);
     if (line.empty() || line.front() == '#' || line.front() == '%') return {};
-    const std::size_t end = std::min(line.find_first_of(kBetween), line.size());
+    const std::size_t end = std::min(line.find_first_of(kBetweenWords), line.size());
     const std::string_view word = line.substr(0, end), rest = trimmed(line.substr(end));
     ListedImage image;
     if (!parse_stamp(word, image.stamp_ns)) {
@@ -68,7 +68,7 @@ class ListReader {
   }
 
   Outcome<std::vector<ListedImage>> end() && {
-    if (images_.empty()) return failure(file_ + ": lists no image; " + std::string(kExpected));
+    if (images_.empty()) return failure(file_ + ": lists no image; " + std::string(kExpectedList));
     if (missing_ == 0) return std::move(images_);
     std::string text = file_ + ": " + counted(missing_, "file") + " of " +
                        std::to_string(images_.size()) + (missing_ == 1 ? " is" : " are") +
@@ -79,7 +79,7 @@ class ListReader {
 
   Failure wrong(std::size_t number, const std::string& what) const {
     return failure(file_ + ":" + std::to_string(number) + ": " + what + "; " +
-                   std::string(kExpected));
+                   std::string(kExpectedList));
   }
 
  private:
@@ -118,15 +118,15 @@ Outcome<std::vector<ListedImage>> read_image_list(const std::string& file) {
   errno = 0;
   std::error_code error;
   if (fs::is_directory(file, error)) {
-    return failure(file + ": is a folder; " + std::string(kExpected));
+    return failure(file + ": is a folder; " + std::string(kExpectedList));
   }
   std::ifstream in(file, std::ios::binary);
   if (!in) {
-    return failure(file + ": " + std::strerror(errno) + "; " + std::string(kExpected),
+    return failure(file + ": " + std::strerror(errno) + "; " + std::string(kExpectedList),
                    ErrorCode::kNotFound);
   }
   if (const std::string kind = stand_in_at(file); !kind.empty()) {
-    return failure(file + ": is " + kind + "; " + std::string(kExpected));
+    return failure(file + ": is " + kind + "; " + std::string(kExpectedList));
   }
   ListReader reader(file);
   // std::getline would take a line of any length.

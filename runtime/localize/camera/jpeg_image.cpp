@@ -17,7 +17,7 @@ constexpr int kMostScans = 64;
 
 // libjpeg reports an error by a call that must not return, so the decoder jumps out of it. Nothing
 // between setjmp() and there has a destructor.
-struct Decoder {
+struct JpegDecoder {
   jpeg_decompress_struct jpeg;
   jpeg_error_mgr errors;
   jpeg_progress_mgr progress;
@@ -26,33 +26,35 @@ struct Decoder {
   const char* refused;  // our own reason, not libjpeg's
 };
 
-Decoder& decoder_of(j_common_ptr jpeg) { return *static_cast<Decoder*>(jpeg->client_data); }
+JpegDecoder& jpeg_decoder_of(j_common_ptr jpeg) {
+  return *static_cast<JpegDecoder*>(jpeg->client_data);
+}
 
-[[noreturn]] void refuse(Decoder& decoder, const char* why) {
+[[noreturn]] void refuse_jpeg(JpegDecoder& decoder, const char* why) {
   decoder.refused = why;
   std::longjmp(decoder.out, 1);
 }
 
-[[noreturn]] void on_error(j_common_ptr jpeg) {
-  Decoder& decoder = decoder_of(jpeg);
+[[noreturn]] void on_jpeg_error(j_common_ptr jpeg) {
+  JpegDecoder& decoder = jpeg_decoder_of(jpeg);
   (*jpeg->err->format_message)(jpeg, decoder.message);
   std::longjmp(decoder.out, 1);
 }
 
 // libjpeg fills what is missing with grey and only warns. Bytes between two markers do no harm;
 // some webcams pad their frames with them.
-void on_message(j_common_ptr jpeg, int level) {
+void on_jpeg_message(j_common_ptr jpeg, int level) {
   if (level >= 0 || jpeg->err->msg_code == JWRN_EXTRANEOUS_DATA) return;
-  if (jpeg->err->msg_code == JWRN_JPEG_EOF) refuse(decoder_of(jpeg), "ends early");
-  on_error(jpeg);
+  if (jpeg->err->msg_code == JWRN_JPEG_EOF) refuse_jpeg(jpeg_decoder_of(jpeg), "ends early");
+  on_jpeg_error(jpeg);
 }
 
-void on_progress(j_common_ptr jpeg) {
-  Decoder& decoder = decoder_of(jpeg);
-  if (decoder.jpeg.input_scan_number > kMostScans) refuse(decoder, "has more than 64 scans");
+void on_jpeg_progress(j_common_ptr jpeg) {
+  JpegDecoder& decoder = jpeg_decoder_of(jpeg);
+  if (decoder.jpeg.input_scan_number > kMostScans) refuse_jpeg(decoder, "has more than 64 scans");
 }
 
-bool begin(Decoder& decoder, ByteSpan bytes) {
+bool begin_jpeg(JpegDecoder& decoder, ByteSpan bytes) {
   if (setjmp(decoder.out) != 0) return false;
   jpeg_create_decompress(&decoder.jpeg);
   decoder.jpeg.client_data = &decoder;
@@ -62,13 +64,14 @@ bool begin(Decoder& decoder, ByteSpan bytes) {
                static_cast<unsigned long>(bytes.size()));
   jpeg_read_header(&decoder.jpeg, TRUE);
   const J_COLOR_SPACE space = decoder.jpeg.jpeg_color_space;
-  if (space == JCS_CMYK || space == JCS_YCCK) refuse(decoder, "is in CMYK, a printer's colours");
+  if (space == JCS_CMYK || space == JCS_YCCK)
+    refuse_jpeg(decoder, "is in CMYK, a printer's colours");
   decoder.jpeg.out_color_space = JCS_GRAYSCALE;
   decoder.jpeg.dct_method = JDCT_ISLOW;  // the same bits on every computer
   return true;
 }
 
-bool decode(Decoder& decoder, std::uint8_t* to) {
+bool decode_scans(JpegDecoder& decoder, std::uint8_t* to) {
   if (setjmp(decoder.out) != 0) return false;
   jpeg_start_decompress(&decoder.jpeg);
   while (decoder.jpeg.output_scanline < decoder.jpeg.output_height) {
@@ -82,11 +85,11 @@ bool decode(Decoder& decoder, std::uint8_t* to) {
 }  // namespace
 
 Outcome<void> decode_jpeg(ByteSpan bytes, const std::string& name, GreyImage& into) {
-  Decoder decoder{};
+  JpegDecoder decoder{};
   decoder.jpeg.err = jpeg_std_error(&decoder.errors);
-  decoder.errors.error_exit = on_error;
-  decoder.errors.emit_message = on_message;
-  decoder.progress.progress_monitor = on_progress;
+  decoder.errors.error_exit = on_jpeg_error;
+  decoder.errors.emit_message = on_jpeg_message;
+  decoder.progress.progress_monitor = on_jpeg_progress;
   struct End {
     jpeg_decompress_struct& jpeg;
     ~End() { jpeg_destroy_decompress(&jpeg); }
@@ -97,7 +100,7 @@ Outcome<void> decode_jpeg(ByteSpan bytes, const std::string& name, GreyImage& in
     return decoder.refused != nullptr ? refused_image(name, "JPEG", decoder.refused)
                                       : refused_image(name, "JPEG", "is damaged", decoder.message);
   };
-  if (!begin(decoder, bytes)) return refused();
+  if (!begin_jpeg(decoder, bytes)) return refused();
   if (const auto fits = check_image_size(name, decoder.jpeg.image_width, decoder.jpeg.image_height);
       !fits) {
     return fits;
@@ -105,7 +108,7 @@ Outcome<void> decode_jpeg(ByteSpan bytes, const std::string& name, GreyImage& in
   into.width = static_cast<int>(decoder.jpeg.image_width);
   into.height = static_cast<int>(decoder.jpeg.image_height);
   into.pixels.resize(std::size_t{decoder.jpeg.image_width} * decoder.jpeg.image_height);
-  if (!decode(decoder, into.pixels.data())) return refused();
+  if (!decode_scans(decoder, into.pixels.data())) return refused();
   return {};
 }
 

@@ -10,15 +10,15 @@
 namespace zonepack::localize {
 namespace {
 
-constexpr std::string_view kMagic = "ZPI1";
+constexpr std::string_view kImageMagic = "ZPI1";
 constexpr std::uint32_t kJpegHeadBytes = 64 * 1024;  // tables and notes of a small JPEG
-constexpr unsigned kMode = 0660;
+constexpr unsigned kSocketMode = 0660;
 constexpr int kMostWait_ms = 100;
 constexpr std::uint64_t kMostTaken = 8;  // images of a fast writer before one is looked at
 
 // Little-endian.
 template <typename T>
-T number_at(ByteSpan bytes, std::size_t at) noexcept {
+T little_endian_at(ByteSpan bytes, std::size_t at) noexcept {
   std::uint64_t value = 0;
   for (std::size_t i = 0; i < sizeof(T); ++i) {
     value |= std::to_integer<std::uint64_t>(bytes[at + i]) << (8 * i);
@@ -44,7 +44,7 @@ SocketSource::SocketSource(std::string name, LocalListener listener, int width, 
 
 Outcome<std::unique_ptr<ImageSource>> SocketSource::open(const std::string& path, int width,
                                                          int height) {
-  Result<LocalListener> listener = LocalListener::listen(path, kMode);
+  Result<LocalListener> listener = LocalListener::listen(path, kSocketMode);
   if (!listener) {
     switch (listener.error().code) {
       case ErrorCode::kExists:
@@ -82,21 +82,21 @@ void SocketSource::hang_up(const std::string& why) {
 
 bool SocketSource::parse_header(ByteSpan packet, Header& header, std::string& why) const {
   if (packet.size() != kHeaderBytes ||
-      std::memcmp(packet.data(), kMagic.data(), kMagic.size()) != 0) {
+      std::memcmp(packet.data(), kImageMagic.data(), kImageMagic.size()) != 0) {
     why = "expected a header of 32 bytes that begins with ZPI1, got " +
           std::to_string(packet.size()) + " bytes";
     return false;
   }
-  header.bytes = number_at<std::uint32_t>(packet, 4);
-  const auto width = number_at<std::uint32_t>(packet, 8);
-  const auto height = number_at<std::uint32_t>(packet, 12);
-  header.image.row_bytes = number_at<std::uint32_t>(packet, 16);
-  const auto format = number_at<std::uint8_t>(packet, 20);
-  const auto clock = number_at<std::uint8_t>(packet, 21);
-  header.stamp_ns = number_at<std::int64_t>(packet, 24);
+  header.bytes = little_endian_at<std::uint32_t>(packet, 4);
+  const auto width = little_endian_at<std::uint32_t>(packet, 8);
+  const auto height = little_endian_at<std::uint32_t>(packet, 12);
+  header.image.row_bytes = little_endian_at<std::uint32_t>(packet, 16);
+  const auto format = little_endian_at<std::uint8_t>(packet, 20);
+  const auto clock = little_endian_at<std::uint8_t>(packet, 21);
+  header.stamp_ns = little_endian_at<std::int64_t>(packet, 24);
   if (format > static_cast<std::uint8_t>(PixelFormat::kJpeg) ||
       clock > static_cast<std::uint8_t>(ImageClock::kRealtime) ||
-      number_at<std::uint16_t>(packet, 22) != 0) {
+      little_endian_at<std::uint16_t>(packet, 22) != 0) {
     why = "format " + std::to_string(format) + ", clock " + std::to_string(clock) +
           "; expected format 0 to 4, clock 0 to 2 and zeros behind them";
     return false;

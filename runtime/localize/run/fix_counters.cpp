@@ -12,22 +12,23 @@ namespace {
 
 constexpr const char* kWithoutPose = "no_pose";
 
-wire::Timing timing(const Histogram& histogram) {
+wire::Timing wire_timing(const Histogram& histogram) {
   const TimingFigures f = histogram.figures();
   return {f.count, f.p50, f.p99, f.p999, f.p9999, f.max};
 }
 
-std::string number(double value) {
+std::string decimal(double value) {
   char text[48];
   std::snprintf(text, sizeof text, "%.9g", value);
   return text;
 }
 
-std::string ms(std::int64_t ns) { return number(static_cast<double>(ns) / 1e6); }
+std::string in_ms(std::int64_t ns) { return decimal(static_cast<double>(ns) / 1e6); }
 
-std::string percentiles(const Histogram& histogram) {
-  return "\"p50\":" + ms(histogram.percentile(0.5)) + ",\"p95\":" + ms(histogram.percentile(0.95)) +
-         ",\"max\":" + ms(histogram.figures().max);
+std::string percentiles_json(const Histogram& histogram) {
+  return "\"p50\":" + in_ms(histogram.percentile(0.5)) +
+         ",\"p95\":" + in_ms(histogram.percentile(0.95)) +
+         ",\"max\":" + in_ms(histogram.figures().max);
 }
 
 }  // namespace
@@ -55,7 +56,7 @@ flatbuffers::Offset<wire::Localizer> FixCounters::put(flatbuffers::FlatBufferBui
   add(kWithoutPose, without_pose_);
   const auto list = to.CreateVector(reasons);
   const auto name = to.CreateString(camera.substr(0, 128));
-  const wire::Timing latency = timing(latency_), query = timing(query_);
+  const wire::Timing latency = wire_timing(latency_), query = wire_timing(query_);
   return wire::CreateLocalizer(to, name, images_, fixes(), skipped_, refused_, &latency, &query,
                                list);
 }
@@ -71,15 +72,15 @@ std::string FixCounters::json(std::uint64_t rss_peak_bytes) const {
   std::string stages;
   for (std::size_t i = 0; i < kStages; ++i) {
     stages += (i == 0 ? "" : ",") + json_quoted(to_string(static_cast<Stage>(i))) + ":{" +
-              percentiles(stages_[i]) + "}";
+              percentiles_json(stages_[i]) + "}";
   }
   const double share =
       images_ == 0 ? 0 : static_cast<double>(accepted_) / static_cast<double>(images_);
   return "{\"images\":" + std::to_string(images_) + ",\"accepted\":" + std::to_string(accepted_) +
-         ",\"share\":" + number(share) + ",\"fixes_sent\":" + std::to_string(fixes()) +
+         ",\"share\":" + decimal(share) + ",\"fixes_sent\":" + std::to_string(fixes()) +
          ",\"skipped\":" + std::to_string(skipped_) + ",\"refused\":" + std::to_string(refused_) +
-         ",\"reasons\":{" + reasons + "},\"latency_ms\":{" + percentiles(latency_) +
-         "},\"query_ms\":{" + percentiles(query_) + ",\"stages\":{" + stages +
+         ",\"reasons\":{" + reasons + "},\"latency_ms\":{" + percentiles_json(latency_) +
+         "},\"query_ms\":{" + percentiles_json(query_) + ",\"stages\":{" + stages +
          "}},\"rss_peak_bytes\":" + std::to_string(rss_peak_bytes) + "}\n";
 }
 

@@ -10,7 +10,7 @@
 namespace zonepack::localize {
 namespace {
 
-Eigen::Isometry3d isometry(const RigidTransform& from) {
+Eigen::Isometry3d transform_of(const RigidTransform& from) {
   Eigen::Isometry3d to = Eigen::Isometry3d::Identity();
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) {
@@ -39,7 +39,7 @@ bool ResidentFeatures::list(ZonesInMemory& zones, ZoneId id, Zone& zone) {
     entries.reserve(signatures.size());
     for (std::uint32_t i = 0; i < signatures.size(); ++i) {
       if (const auto pose = signatures[i].T_map_base()) {
-        entries.push_back({isometry(*pose), i, false, nullptr});
+        entries.push_back({transform_of(*pose), i, false, nullptr});
       }
     }
   });

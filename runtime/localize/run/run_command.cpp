@@ -25,7 +25,7 @@
 namespace zonepack::localize {
 namespace {
 
-constexpr const char* kProgram = "zoneloc";
+constexpr const char* kZoneloc = "zoneloc";
 constexpr std::int64_t kTurn_ns = 50'000'000;       // how late SIGTERM is noticed
 constexpr std::int64_t kReport_ns = 1'000'000'000;  // between reports to zoned
 constexpr std::int64_t kReconnect_ns = 1'000'000'000;
@@ -33,9 +33,9 @@ constexpr std::int64_t kSilence_ns =
     2'000'000'000;  // of a camera, before it is said to have stopped
 constexpr std::int64_t kFreshState_ns = 100'000'000;  // for the run's clock
 
-void say(const std::string& text) { std::cerr << kProgram << ": " << text << std::endl; }
+void say(const std::string& text) { std::cerr << kZoneloc << ": " << text << std::endl; }
 
-std::string socket_of(const RunArguments& arguments) {
+std::string socket_to_use(const RunArguments& arguments) {
   if (!arguments.socket.empty()) return arguments.socket;
   const char* const from_environment = std::getenv("ZONED_SOCKET");
   if (from_environment != nullptr && *from_environment != '\0') return from_environment;
@@ -47,7 +47,7 @@ class Run {
   Run(const RunArguments& arguments, const CameraModel& camera)
       : arguments_(arguments),
         camera_(camera),
-        socket_(socket_of(arguments)),
+        socket_(socket_to_use(arguments)),
         watch_(camera.width, camera.height) {}
 
   Outcome<void> begin();
@@ -263,7 +263,7 @@ Outcome<void> Run::go() {
   return {};
 }
 
-Outcome<void> put_json(const std::string& file, const std::string& text) {
+Outcome<void> write_summary(const std::string& file, const std::string& text) {
   if (file.empty()) return {};
   if (file == "-") {
     std::cout << text << std::flush;
@@ -279,17 +279,17 @@ Outcome<void> put_json(const std::string& file, const std::string& text) {
 int run_localizer(const RunArguments& arguments) {
   hold_signals();
   const auto camera = read_calibration(arguments.calibration);
-  if (!camera) return report_failure(kProgram, camera.error());
+  if (!camera) return report_failure(kZoneloc, camera.error());
   if (const auto possible = check_outputs({{"--json", arguments.json, true}}); !possible) {
-    return report_failure(kProgram, possible.error());
+    return report_failure(kZoneloc, possible.error());
   }
   Run run(arguments, *camera);
-  if (const auto begun = run.begin(); !begun) return report_failure(kProgram, begun.error());
+  if (const auto begun = run.begin(); !begun) return report_failure(kZoneloc, begun.error());
   Failures all;
   all.add(run.go());
   say(run.counters().text());
-  all.add(put_json(arguments.json, run.counters().json(process_peak_bytes())));
-  if (const auto done = all.all(); !done) return report_failure(kProgram, done.error());
+  all.add(write_summary(arguments.json, run.counters().json(process_peak_bytes())));
+  if (const auto done = all.all(); !done) return report_failure(kZoneloc, done.error());
   return 0;
 }
 

@@ -28,7 +28,7 @@ inline constexpr ByteCount kTableBytesPerMap = 16 * kKiB;
 inline constexpr ByteCount kReadBufferBytes = 64 * kKiB;
 inline constexpr ByteCount kIndexBytesPerChunk = 96;  // its entry, and where it was loaded to
 // While a manifest is read, its bytes are held this many times: the file, and its copy and blocks
-// in a recording. The first kFreeMapBytes of that are part of the program's own memory, the 16 MiB
+// in a recording. The first kFreeMapBytes of that are part of the program's own memory, the 12 MiB
 // besides the budget; the rest is charged.
 inline constexpr ByteCount kManifestHeldTimes = 3;
 inline constexpr ByteCount kFreeMapBytes = 2 * kMiB;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # boot: virtual-time disk
 # Scenario 1 on the bus in its own time: zoned from its package, started as its unit does under memory.max = budget +
-# 16 MiB, is never without its zone, keeps within its budget, and enters the zones that the host's replay enters. A
+# 12 MiB, is never without its zone, keeps within its budget, and enters the zones that the host's replay enters. A
 # cycle's work takes at most 200 us at p99.99 on this processor of 4 ns an instruction: 50 us where one takes 1 ns; on
 # a 32-bit one, which needs more of them, 300.
 # shellcheck source=tests/system/guest/lib.sh

@@ -17,7 +17,7 @@ as_unit() {  # KEY OPTION...
   exec start-stop-daemon -S -c "$user:$user" -x "${line%% *}" -- ${line#* } "$@"
 }
 
-# The settings of the package for this map and budget, the unit's folders, its memory limit (budget + 16 MiB as it
+# The settings of the package for this map and budget, the unit's folders, its memory limit (budget + 12 MiB as it
 # says), its check and its command. Sets pid; zoned's words come in zoned.log.
 start_unit() {  # BUDGET_BYTES OPTION...
   group=/sys/fs/cgroup/zoned
@@ -27,7 +27,7 @@ start_unit() {  # BUDGET_BYTES OPTION...
   chown "$user:$user" /run/zoned "$state" /data/out
   sed -e 's|^  path: ""|  path: /payload/map|' -e "s|^  # budget: 24MiB|  budget: $1|" "$config" \
     >/etc/zonepack/zoned.yaml
-  echo $(($1 + (16 << 20))) >$group/memory.max
+  echo $(($1 + (12 << 20))) >$group/memory.max
   shift
   sysctl -q -p "${config%/*}/90-zoned.conf"
   export STATE_DIRECTORY=$state

@@ -48,7 +48,7 @@ TEST(Thread, UsesItsStackWithoutAFault) {
 #endif
   auto thread = Thread::start({.name = "zp-test"}, false, [&] {
     const ThreadUsage before = thread_usage();
-    volatile char used[160 * 1024];
+    volatile char used[96 * 1024];
     for (std::size_t at = 0; at < sizeof used; at += 4096) used[at] = 1;
     faults = thread_usage().minor_faults - before.minor_faults;
   });
