@@ -15,7 +15,13 @@ namespace {
 class FeaturesInReachTest : public testing::Test {
  protected:
   FeaturesInReachTest() {
-    test_support::SmallMap map;
+    test_support::SignatureRecipe in_a, in_b;
+    in_a.x = 2;
+    in_a.y = 2;
+    in_b.id = 2;
+    in_b.x = 6;
+    in_b.y = 2;
+    test_support::SmallMap map({in_a}, {in_b});
     map.write_manifest();
     for (const auto& [name, bytes] : map.folder.files) {
       test_support::write_bytes(folder / name, bytes);
@@ -73,6 +79,7 @@ TEST_F(FeaturesInReachTest, ForgetsCopiesOfAZoneWhoseSlotsAreReused) {
 
 TEST_F(FeaturesInReachTest, LeavesOutWhatIsBeyondTheReachOfACamera) {
   load(0, 1, 0);
+  EXPECT_EQ(zones_offered(4).size(), 1u);
   EXPECT_TRUE(zones_offered(1000).empty());
 }
 
