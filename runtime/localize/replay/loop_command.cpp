@@ -133,6 +133,11 @@ Outcome<void> write_figures(const LoopFigures& figures, const LoopArguments& arg
 }
 
 Outcome<void> drive(const LoopArguments& arguments) {
+  if (arguments.start.kind == StartChoice::Kind::kFix) {
+    note(
+        "warning: nothing ever says where the robot is, so no zone is loaded and no image is "
+        "queried: give --start X,Y,YAW_DEG, or --start truth with --truth FILE");
+  }
   auto inputs = read_inputs(arguments);
   if (!inputs) return inputs.error();
   const zonepack::Settings& settings = inputs->run.settings;
