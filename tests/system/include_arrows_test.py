@@ -47,10 +47,12 @@ ARROWS = {
                     " runtime/odometry runtime/pack_format/file runtime/recording runtime/run runtime/serve"
                     " runtime/settings runtime/state",
     "runtime/replay": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
-                      " runtime/recording runtime/run runtime/settings",
+                      " runtime/odometry runtime/pack_format runtime/recording runtime/run runtime/settings",
     "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
     "runtime/listen": "platform platform/base platform/sim runtime/calibrate runtime/live runtime/odometry runtime/run"
                       " runtime/settings",
+    "runtime/localize/replay": "platform platform/base runtime/client runtime/localize/camera runtime/localize/query"
+                               " runtime/odometry runtime/pack_format/file runtime/replay runtime/run",
     "runtime/zoned": "platform platform/command_line platform/version runtime/calibrate runtime/listen runtime/live"
                      " runtime/pack_format/file"
                      " runtime/recording runtime/replay runtime/report",

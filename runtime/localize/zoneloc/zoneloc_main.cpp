@@ -7,6 +7,7 @@
 #include "platform/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/localize/zoneloc/add_query.hpp"
+#include "runtime/localize/zoneloc/add_replay.hpp"
 #include "runtime/localize/zoneloc/add_run.hpp"
 #include "runtime/protocol/messages.hpp"
 
@@ -26,6 +27,8 @@ int main(int argc, char** argv) {
   zonepack::localize::add_run(app, run, command);
   zonepack::localize::QueryArguments query;
   zonepack::localize::add_query(app, query, command);
+  zonepack::localize::LoopArguments replay;
+  zonepack::localize::add_replay(app, replay, command);
   try {
     zonepack::parse_command_line(app, argc, argv);
   } catch (const CLI::ParseError& error) {
