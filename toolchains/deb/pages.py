@@ -28,7 +28,7 @@ class Help:
         rows = []
         for line in lines:
             heading = re.fullmatch(r"(\S.*):", line)
-            row = re.match(r"  (\S.*?)(?:  +(\S.*))?$", line)
+            row = re.match(r"  (\S.*? REQUIRED) (\S.*)$", line) or re.match(r"  (\S.*?)(?:  +(\S.*))?$", line)
             if heading:
                 rows = self.groups.setdefault(heading[1], [])
             elif row and not line.startswith("   "):

@@ -8,7 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kWatchSecond_ns = 1'000'000'000;
 
 class FrameWatchTest : public testing::Test {
  protected:
@@ -52,11 +52,13 @@ TEST_F(FrameWatchTest, RefusesAStampThatDoesNotRise) {
 
 // 5 s old passes, a nanosecond more does not; 0.2 s ahead likewise.
 TEST_F(FrameWatchTest, RefusesAStampOfAnotherTime) {
-  const std::int64_t now_ns = 100 * kSecond_ns;
-  EXPECT_EQ(watch_.refuse(image(95 * kSecond_ns, 1), now_ns), "");
-  EXPECT_THAT(watch_.refuse(image(95 * kSecond_ns - 1, 2), now_ns), HasSubstr("5.000 s behind"));
-  EXPECT_EQ(watch_.refuse(image(now_ns + kSecond_ns / 5, 2), now_ns), "");
-  EXPECT_THAT(watch_.refuse(image(now_ns + kSecond_ns / 5 + 1, 3), now_ns), HasSubstr("ahead"));
+  const std::int64_t now_ns = 100 * kWatchSecond_ns;
+  EXPECT_EQ(watch_.refuse(image(95 * kWatchSecond_ns, 1), now_ns), "");
+  EXPECT_THAT(watch_.refuse(image(95 * kWatchSecond_ns - 1, 2), now_ns),
+              HasSubstr("5.000 s behind"));
+  EXPECT_EQ(watch_.refuse(image(now_ns + kWatchSecond_ns / 5, 2), now_ns), "");
+  EXPECT_THAT(watch_.refuse(image(now_ns + kWatchSecond_ns / 5 + 1, 3), now_ns),
+              HasSubstr("ahead"));
   EXPECT_THAT(watch_.refuse(image(INT64_MIN, 3), now_ns), HasSubstr("behind"));
   EXPECT_THAT(watch_.refuse(image(INT64_MAX, 3), -5), HasSubstr("ahead"));
 }

@@ -8,25 +8,25 @@
 namespace zonepack::localize {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kLinkSecond_ns = 1'000'000'000;
 
 // The run's clock is 1000 s behind CLOCK_REALTIME, which is 900 s ahead of CLOCK_MONOTONIC: an
 // image at 5 s of CLOCK_MONOTONIC is at 905 s of CLOCK_REALTIME, and at -95 s of the run.
 TEST(OnRunClock, TakesEachClock) {
   RobotState state;
-  state.offset_ns = 1000 * kSecond_ns;
-  const std::int64_t offset_ns = 900 * kSecond_ns;
-  EXPECT_EQ(on_run_clock(5 * kSecond_ns, ImageClock::kMonotonic, state, offset_ns),
-            -95 * kSecond_ns);
-  EXPECT_EQ(on_run_clock(905 * kSecond_ns, ImageClock::kRealtime, state, offset_ns),
-            -95 * kSecond_ns);
+  state.offset_ns = 1000 * kLinkSecond_ns;
+  const std::int64_t offset_ns = 900 * kLinkSecond_ns;
+  EXPECT_EQ(on_run_clock(5 * kLinkSecond_ns, ImageClock::kMonotonic, state, offset_ns),
+            -95 * kLinkSecond_ns);
+  EXPECT_EQ(on_run_clock(905 * kLinkSecond_ns, ImageClock::kRealtime, state, offset_ns),
+            -95 * kLinkSecond_ns);
   EXPECT_EQ(on_run_clock(7, ImageClock::kRun, state, offset_ns), 7);
 }
 
 RobotState driving() {
   RobotState state;
   state.has_pose = true;
-  state.pose_ns = 10 * kSecond_ns;
+  state.pose_ns = 10 * kLinkSecond_ns;
   state.pose.T_map_base = {1, 2, std::numbers::pi / 2};
   state.pose.covariance.xx = state.pose.covariance.yy = 0.01;
   state.pose.covariance.yaw_yaw = 0.001;
@@ -55,7 +55,7 @@ TEST(PoseAt, TurnsAndWraps) {
 
 // The last speed says nothing about a minute: half a second of it counts.
 TEST(PoseAt, GoesNoFartherThanHalfASecond) {
-  EXPECT_NEAR(pose_at(driving(), 70 * kSecond_ns).T_map_base.y_m, 2.5, 1e-12);
+  EXPECT_NEAR(pose_at(driving(), 70 * kLinkSecond_ns).T_map_base.y_m, 2.5, 1e-12);
 }
 
 }  // namespace
