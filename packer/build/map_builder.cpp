@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "packer/build/detector_text.hpp"
 #include "packer/build/manifest_writer.hpp"
 #include "packer/build/map_folder.hpp"
 #include "packer/build/repeated_features.hpp"
@@ -347,7 +348,7 @@ void MapBuilder::finish(MapFolder& folder) {
                     " unlinked=" + kUnlinked[static_cast<std::size_t>(options_.unlinked)] +
                     " max_zone_bytes=" + std::to_string(options_.max_zone_bytes) +
                     " snap=" + number_text(options_.snap_m);
-  content.detector = database_.outline().parameter("Kp/DetectorStrategy").value_or("");
+  content.detector = detector_text(database_.outline());
   content.source_feature_count = database_.outline().feature_count;
   content.source_bytes = summary_.source_bytes;
   const Bytes manifest = manifest_bytes(content);

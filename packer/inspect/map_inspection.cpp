@@ -86,6 +86,15 @@ Json portals_json(const fb::Manifest& manifest) {
   return json;
 }
 
+// "8 Kp/MaxFeatures:400;GFTT/BlockSize:3": the detector, and its settings where the source has any.
+Json detector_part(const flatbuffers::String* text, bool settings) {
+  if (text == nullptr) return nullptr;
+  const std::string all = text->str();
+  const std::size_t blank = all.find(' ');
+  if (!settings) return all.substr(0, blank);
+  return blank == std::string::npos ? Json() : Json(all.substr(blank + 1));
+}
+
 Json provenance_json(const fb::Provenance& provenance) {
   return {{"source_kind", text_or_null(provenance.source_kind())},
           {"source_version", text_or_null(provenance.source_version())},
@@ -94,7 +103,8 @@ Json provenance_json(const fb::Provenance& provenance) {
           {"options", text_or_null(provenance.options())},
           {"source_feature_count", provenance.source_feature_count()},
           {"source_bytes", provenance.source_bytes()},
-          {"detector", text_or_null(provenance.detector())}};
+          {"detector", detector_part(provenance.detector(), false)},
+          {"detector_settings", detector_part(provenance.detector(), true)}};
 }
 
 void print(const fb::Manifest& manifest, const std::string& folder, const std::string& version,

@@ -51,6 +51,10 @@ Result<Catalog> Catalog::read(ByteSpan file, const std::string& folder, PayloadM
   catalog.folder = folder;
   std::copy(manifest.lineage()->begin(), manifest.lineage()->end(), catalog.lineage.begin());
   catalog.version = manifest_digest(file);
+  if (const auto* const detector = manifest.provenance()->detector();
+      detector != nullptr && detector->size() <= kMostDetectorBytes) {
+    catalog.detector = detector->str();
+  }
   catalog.payload = payload;
   const MapCosts costs = map_costs(manifest, file.size(), payload);
   catalog.fixed_bytes = costs.fixed_bytes;

@@ -44,6 +44,7 @@ struct Catalog {
   std::string folder;
   Digest16 lineage{};
   Digest32 version{};       // digest of the manifest
+  std::string detector;     // of its features; empty when it is over kMostDetectorBytes
   PayloadMask payload = 0;  // what will be loaded
   std::vector<CatalogZone> zones;
   std::vector<CatalogPortal> portals;
@@ -65,6 +66,7 @@ struct Catalog {
   static Result<Catalog> read(ByteSpan manifest, const std::string& folder, PayloadMask payload,
                               ByteCount most = kNoMost, std::string* why = nullptr);
 
+  static constexpr std::size_t kMostDetectorBytes = 2048;
   static constexpr ByteCount kNoMost = std::numeric_limits<ByteCount>::max();
 
   // What map_costs() gives for the manifest.

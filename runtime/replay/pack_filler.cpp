@@ -10,6 +10,7 @@ PackFiller::PackFiller(const Catalog& catalog, std::uint32_t slots)
     : catalog_(&catalog),
       arena_(slots, kSlotBytes),
       read_buffer_(kReadBufferBytes),
+      chunks_(catalog.zones.size()),
       noted_(catalog.zones.size()) {
   places_.reserve(slots);
 }
@@ -25,6 +26,7 @@ Result<void> PackFiller::fill(ZoneId zone, std::span<const SlotIndex> slots) {
 void PackFiller::use(const Catalog& catalog) {
   if (&catalog == catalog_) return;
   catalog_ = &catalog;
+  chunks_.assign(catalog.zones.size(), {});
   noted_.assign(catalog.zones.size(), false);
 }
 
@@ -35,7 +37,10 @@ Result<void> PackFiller::load(ZoneId zone) {
   for (;;) {
     const Result<bool> more = load->step();
     if (!more) return more.error();
-    if (!*more) return {};
+    if (!*more) {
+      chunks_[zone] = load->chunks();
+      return {};
+    }
   }
 }
 

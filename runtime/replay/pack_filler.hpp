@@ -7,6 +7,7 @@
 
 #include "runtime/map/catalog.hpp"
 #include "runtime/memory/arena.hpp"
+#include "runtime/pack_format/zone_view.hpp"
 #include "runtime/run/modelled_loader.hpp"
 
 namespace zonepack {
@@ -20,6 +21,10 @@ class PackFiller final : public ZoneFiller {
   Result<void> fill(ZoneId zone, std::span<const SlotIndex> slots) override;
   void use(const Catalog& catalog) override;
 
+  // Where the chunks of a zone lie in the arena since it was last loaded; until others use its
+  // slots.
+  const std::vector<ChunkRef>& chunks(ZoneId zone) const noexcept { return chunks_[zone]; }
+
   // A complete message for each zone whose pack could not be loaded, once.
   const std::vector<std::string>& faults() const noexcept { return faults_; }
 
@@ -31,6 +36,7 @@ class PackFiller final : public ZoneFiller {
   Arena arena_;
   std::vector<std::byte> read_buffer_;
   std::vector<std::byte*> places_;
+  std::vector<std::vector<ChunkRef>> chunks_;  // by ZoneId
   std::vector<bool> noted_;
   std::vector<std::string> faults_;
 };

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/replay/replay.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
+#include "platform/base/require.hpp"
 #include "platform/sim/sim_can_bus.hpp"
 #include "runtime/replay/pack_filler.hpp"
 #include "runtime/run/modelled_loader.hpp"
@@ -20,31 +22,42 @@ class LogDrive {
         filler_(input.load_packs ? std::make_unique<PackFiller>(map->catalog(), map->model().slots)
                                  : nullptr),
         loader_(map->catalog(), map->model().slots, input.terms.rates, filler_.get()),
+        resident_(filler_.get()),
         bus_(&input.frames),
         run_({.cycle = input.cycle,
               .terms = input.terms,
               .truth = input.truth,
               .events = input.events_path,
               .keep_trace = true},
-             std::move(map)) {}
+             std::move(map)) {
+    if (input_.observer != nullptr) run_.add_observer(*input_.observer);
+  }
 
   Outcome<ReplayResult> drive();
 
  private:
   void run_cycles(std::int64_t start_ns);
+  RunPorts ports() {
+    RunPorts ports{.loader = loader_};
+    if (input_.fixes != nullptr) ports.directory = &resident_;
+    return ports;
+  }
+  void ask_for_fixes(std::int64_t now_ns, std::size_t taken);
 
   ReplayInput& input_;
   std::unique_ptr<PackFiller> filler_;
   ModelledLoader loader_;
+  ResidentZones resident_;
   SimCanBus bus_;
   Run run_;
+  std::vector<PoseCorrection> new_fixes_;
   std::uint64_t frames_ = 0;
 };
 
 Outcome<ReplayResult> LogDrive::drive() {
   const auto first_ns = bus_.next_arrival_ns();
   if (!first_ns) return failure("the CAN log holds no frame");
-  if (const auto opened = run_.open({.loader = loader_}); !opened) return opened.error();
+  if (const auto opened = run_.open(ports()); !opened) return opened.error();
   const auto start = find_start(input_.start, input_.truth, *first_ns);
   if (!start) return start.error();
   if (*start) run_.start_at(**start);
@@ -78,7 +91,23 @@ void LogDrive::run_cycles(std::int64_t start_ns) {
                .corrections = {corrections.data() + taken, end - taken},
                .loads = loads});
     taken = end;
+    if (input_.fixes != nullptr) ask_for_fixes(now_ns, taken);
     if (!bus_.next_arrival_ns()) return;
+  }
+}
+
+// Corrections up to `taken` are past.
+void LogDrive::ask_for_fixes(std::int64_t now_ns, std::size_t taken) {
+  new_fixes_.clear();
+  input_.fixes->after_cycle({now_ns, run_.switcher().map().cycle.state(), resident_}, new_fixes_);
+  std::vector<PoseCorrection>& all = input_.corrections;
+  for (const PoseCorrection& fix : new_fixes_) {
+    ZP_REQUIRE(fix.received_ns > now_ns);
+    const auto later = [](std::int64_t t_ns, const PoseCorrection& other) {
+      return t_ns < other.received_ns;
+    };
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(taken);
+    all.insert(std::upper_bound(first, all.end(), fix.received_ns, later), fix);
   }
 }
 

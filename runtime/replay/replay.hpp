@@ -10,7 +10,9 @@
 #include "platform/can_frame_source.hpp"
 #include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
+#include "runtime/replay/fix_source.hpp"
 #include "runtime/run/map_model.hpp"
+#include "runtime/run/run.hpp"
 #include "runtime/run/run_files.hpp"
 #include "runtime/run/run_start.hpp"
 #include "runtime/run/run_summary.hpp"
@@ -28,8 +30,10 @@ struct ReplayInput {
   CycleConfig cycle{};
   std::uint32_t most_frames = 64;  // taken from the bus in one cycle
   MapTerms terms{};
-  std::string events_path{};  // empty: none
-  bool load_packs = true;     // false: zones are accounted for, no pack is read
+  std::string events_path{};        // empty: none
+  bool load_packs = true;           // false: zones are accounted for, no pack is read
+  FixSource* fixes = nullptr;       // computes corrections while it runs
+  RunObserver* observer = nullptr;  // watches
 };
 
 struct ReplayResult {

@@ -9,6 +9,7 @@
 #include "runtime/protocol/messages.hpp"
 #include "runtime/run/line_board.hpp"
 #include "runtime/run/live_status.hpp"
+#include "runtime/serve/localizer_board.hpp"
 #include "runtime/serve/served_map.hpp"
 #include "runtime/zones/route.hpp"
 
@@ -34,7 +35,7 @@ using Message = std::span<const std::byte>;
 
 Message answer_status(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
                       const LiveStatus& status, const ServerCounters& counters,
-                      const LineBoard* lines = nullptr);
+                      const LineBoard* lines = nullptr, const LocalizerBoard* localizers = nullptr);
 Message answer_zones(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
                      std::uint32_t first, bool active_only = false);
 Message answer_outlines(MessageBuilder& to, std::uint64_t id, const ServedMap& map,

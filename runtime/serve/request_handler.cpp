@@ -84,6 +84,7 @@ void RequestHandler::greet(const Call& call) {
   const auto program = builder.CreateString("zoned");
   const auto release = builder.CreateString(ports_.release);
   const auto commit = builder.CreateString(ports_.commit);
+  const auto detector = builder.CreateString(catalog.detector);
   const auto lineage = builder.CreateVector(catalog.lineage.data(), catalog.lineage.size());
   const auto version = builder.CreateVector(catalog.version.data(), catalog.version.size());
   const auto kind_list =
@@ -92,7 +93,7 @@ void RequestHandler::greet(const Call& call) {
       wire::CreateWelcome(builder, kProtocolVersion, program, lineage, version, call.map.serial,
                           static_cast<std::uint32_t>(catalog.zones.size()), signatures, kind_list,
                           call.from.looking_only, kMostMessageBytes, requests_per_s_,
-                          ports_.lease_ns, call.map.epoch, release, commit);
+                          ports_.lease_ns, call.map.epoch, release, commit, detector);
   call.from.greeted = true;
   call.from.answer(message.reply(call.id(), welcome), descriptors);
 }
@@ -131,6 +132,8 @@ void RequestHandler::handle(const Call& call) {
     }
     case RequestBody::Dump:
       return start_dump(call);
+    case RequestBody::ReportLocalizer:
+      return take_report(call);
     default:
       ++counters_.malformed;
       return refuse(call, wire::Fault::Malformed, "unknown request");
@@ -144,7 +147,7 @@ bool RequestHandler::look(const Call& call) {
   switch (request.body_type()) {
     case RequestBody::AskStatus:
       call.from.answer(answer_status(message, call.id(), call.map, ports_.status.load(), counters_,
-                                     ports_.lines));
+                                     ports_.lines, &localizers_));
       return true;
     case RequestBody::AskZones:
       call.from.answer(answer_zones(message, call.id(), call.map,
@@ -290,6 +293,17 @@ void RequestHandler::take_pose(const Call& call) {
   const auto correction = correction_of(*call.request.body_as_GivePose(), now);
   if (!correction) return refuse(call, wire::Fault::Malformed, "not a pose with a covariance");
   if (!ports_.poses.push(*correction)) return refuse(call, wire::Fault::Busy);
+  MessageBuilder message;
+  call.from.answer(message.reply(call.id(), wire::CreateDone(message.builder())));
+}
+
+void RequestHandler::take_report(const Call& call) {
+  const auto taken =
+      localizers_.take(call.from.key, *call.request.body_as_ReportLocalizer()->localizer());
+  if (!taken && taken.error().code == ErrorCode::kBadValue) {
+    return refuse(call, wire::Fault::Malformed, "a report over the limits of PROTOCOL.md");
+  }
+  if (!taken) return refuse(call, fault_of(taken.error()));
   MessageBuilder message;
   call.from.answer(message.reply(call.id(), wire::CreateDone(message.builder())));
 }

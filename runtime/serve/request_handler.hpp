@@ -8,6 +8,7 @@
 #include "platform/slow_job.hpp"
 #include "runtime/serve/answers.hpp"
 #include "runtime/serve/command_router.hpp"
+#include "runtime/serve/localizer_board.hpp"
 #include "runtime/serve/served_map.hpp"
 #include "runtime/serve/server_ports.hpp"
 #include "runtime/serve/session.hpp"
@@ -27,6 +28,12 @@ class RequestHandler {
             std::int64_t monotonic_ns);
 
   CommandRouter& router() noexcept { return router_; }
+
+  // A client's connection has ended: so do its leases and its report.
+  void client_gone(CommandRouter::ClientKey client) {
+    router_.client_gone(client);
+    localizers_.gone(client);
+  }
 
   // Sends `to` the outcome of its command.
   void deliver(Session& to, const CommandRouter::Settled& settled) const;
@@ -66,6 +73,7 @@ class RequestHandler {
                        const flatbuffers::String* name);
   void hint(const Call& call);
   void take_pose(const Call& call);
+  void take_report(const Call& call);
   void start_dump(const Call& call);
   static void refuse(const Call& call, wire::Fault fault, std::string_view text = {});
 
@@ -73,6 +81,7 @@ class RequestHandler {
   const std::uint32_t requests_per_s_;
   ServerCounters& counters_;
   CommandRouter router_;
+  LocalizerBoard localizers_;
   std::uint64_t dump_request_ = 0;
   CommandRouter::ClientKey dump_client_ = 0;
   void end_dump() noexcept;

@@ -331,7 +331,7 @@ void Server::tidy() {
     session->check(now_ns_);
     if (session->dropped()) {
       counters_.clients_dropped += session->was_late() ? 1 : 0;
-      handler_.router().client_gone(session->key);
+      handler_.client_gone(session->key);
       session.reset();
       --counters_.clients;
       continue;

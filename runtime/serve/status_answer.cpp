@@ -47,7 +47,7 @@ LineRows line_rows(flatbuffers::FlatBufferBuilder& builder, const LineBoard& boa
 
 Message answer_status(MessageBuilder& to, std::uint64_t id, const ServedMap& map,
                       const LiveStatus& status, const ServerCounters& counters,
-                      const LineBoard* board) {
+                      const LineBoard* board, const LocalizerBoard* localizers) {
   flatbuffers::FlatBufferBuilder& builder = to.builder();
   const auto pose = pose_report(builder, status);
   const bool somewhere =
@@ -60,6 +60,7 @@ Message answer_status(MessageBuilder& to, std::uint64_t id, const ServedMap& map
   const auto lines = board != nullptr ? line_rows(builder, *board) : LineRows();
   const wire::Timing ready =
       timing(board != nullptr ? board->ready_latency.load() : TimingFigures());
+  const auto localizing = localizers != nullptr ? localizers->put(builder) : LocalizerRows();
   wire::StatusBuilder body(builder);
   body.add_pose(pose);
   body.add_zone(zone);
@@ -68,6 +69,7 @@ Message answer_status(MessageBuilder& to, std::uint64_t id, const ServedMap& map
   body.add_wakeup(&wakeup);
   body.add_cycle(&cycle);
   body.add_lines(lines);
+  body.add_localizers(localizing);
   body.add_map_ready_latency(&ready);
   add_rest(body, status);
   const StatusSource source{status, counters, map};

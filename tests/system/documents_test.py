@@ -12,7 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-PROGRAMS = ("zonepack", "zoned", "zonectl")
+PROGRAMS = ("zonepack", "zoned", "zonectl", "zoneloc")
 # Programs of others, whose options stand in our documents too.
 FOREIGN_PROGRAMS = ("apt-get", "candump", "cmake", "ctest", "flatc", "git", "groupadd", "rsync", "systemctl")
 # Files of the kernel that look like settings.

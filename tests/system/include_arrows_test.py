@@ -47,16 +47,31 @@ ARROWS = {
                     " runtime/odometry runtime/pack_format/file runtime/recording runtime/run runtime/serve"
                     " runtime/settings runtime/state",
     "runtime/replay": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
-                      " runtime/recording runtime/run runtime/settings",
+                      " runtime/odometry runtime/pack_format runtime/recording runtime/run runtime/settings",
     "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
     "runtime/listen": "platform platform/base platform/sim runtime/calibrate runtime/live runtime/odometry runtime/run"
                       " runtime/settings",
+    "runtime/localize/replay": "platform platform/base runtime/client runtime/localize/camera runtime/localize/query"
+                               " runtime/odometry runtime/pack_format/file runtime/replay runtime/run",
     "runtime/zoned": "platform platform/command_line platform/version runtime/calibrate runtime/listen runtime/live"
                      " runtime/pack_format/file"
                      " runtime/recording runtime/replay runtime/report",
     "runtime/ctl/commands": "platform platform/base runtime/control runtime/odometry runtime/pack_format/file"
                             " runtime/protocol runtime/run runtime/serve runtime/settings",
     "runtime/ctl": "platform/command_line platform/signals.hpp platform/version runtime/ctl/commands runtime/protocol",
+
+    "runtime/localize/camera": "platform platform/base runtime/run",
+    "runtime/localize/features": "platform platform/base runtime/localize/camera",
+    "runtime/localize/solve": "runtime/localize/camera runtime/odometry",
+    "runtime/localize/query": "platform platform/base runtime/client runtime/localize/camera"
+                              " runtime/localize/features runtime/localize/solve runtime/map runtime/odometry"
+                              " runtime/pack_format runtime/pack_format/file",
+    "runtime/localize/explain": "platform platform/base runtime/localize/camera runtime/localize/query"
+                                " runtime/localize/solve runtime/map runtime/odometry runtime/report",
+    "runtime/localize/run": "platform platform/base runtime/client runtime/live/histogram.hpp runtime/localize/camera"
+                            " runtime/localize/query runtime/odometry runtime/protocol runtime/run runtime/settings",
+    "runtime/localize/zoneloc": "platform platform/command_line platform/version runtime/localize/explain"
+                                " runtime/localize/replay runtime/localize/run runtime/protocol runtime/report",
 
     "packer/record": "",
     "packer/sources": "packer/record platform/base",
@@ -87,13 +102,15 @@ FOREIGN = {
     r"lz4": "runtime/pack_format/file runtime/recording packer/build packer/encode",
     r"xxhash": "runtime/pack_format/file",
     r"sodium": "runtime/pack_format/file runtime/run",
-    r"yaml-cpp/": "runtime/settings runtime/live",
-    r"Eigen/": "runtime/calibrate",
-    r"CLI/": "platform/command_line runtime/zoned runtime/ctl packer packer/commands packer/console",
+    r"yaml-cpp/": "runtime/settings runtime/live runtime/localize/camera",
+    r"Eigen/": "runtime/calibrate runtime/localize/camera runtime/localize/features runtime/localize/solve runtime/localize/query",
+    r"CLI/": "platform/command_line runtime/zoned runtime/ctl runtime/localize/zoneloc packer packer/commands"
+             " packer/console",
     r"sqlite3\.h": "packer/sources",
     r"zlib\.h": "packer/sources packer/preview",
     r"nlohmann/": "packer/commands packer/console packer/inspect packer/outline packer/verify packer/zones",
-    r"opencv": "",
+    r"opencv": "runtime/localize/features",
+    r"(jpeglib|jerror|png)\.h": "runtime/localize/camera runtime/localize/explain",
 }
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^">]+)[">]', re.MULTILINE)

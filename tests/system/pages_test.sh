@@ -23,7 +23,7 @@ completes() {  # EXPECTED WORD...: the last word is the one being typed; EXPECTE
   mapfile -t COMPREPLY < <(printf '%s\n' "${COMPREPLY[@]}" | sort)
   [ "${COMPREPLY[*]}" = "$expected" ] || { echo "${*:2}: expected '$expected', got '${COMPREPLY[*]}'"; exit 1; }
 }
-for program in zonepack zoned zonectl; do
+for program in zonepack zoned zonectl zoneloc; do
   # shellcheck disable=SC1090
   . "$source/toolchains/deb/completions/$program"
 done

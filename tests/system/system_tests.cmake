@@ -30,14 +30,17 @@ if(TARGET zonepack AND TARGET zoned)
                    ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(system/report_pages PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600)
 endif()
-if(TARGET zonepack AND TARGET zoned AND TARGET zonectl)
+if(TARGET zonepack AND TARGET zoned AND TARGET zonectl AND TARGET zoneloc)
   add_test(NAME system/documents
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/documents_test.py ${PROJECT_SOURCE_DIR}
                    ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 endif()
 add_test(NAME system/packages_listed
          COMMAND ${CMAKE_CURRENT_LIST_DIR}/packages_listed_test.sh ${PROJECT_SOURCE_DIR})
-if(TARGET zonepack AND TARGET zoned AND TARGET zonectl)
+if(TARGET zonepack AND TARGET zoned AND TARGET zonectl AND TARGET zoneloc)
+  add_test(NAME system/localizer_run
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/localize/run_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
   add_test(NAME system/version
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/version_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR} ${PROJECT_VERSION})

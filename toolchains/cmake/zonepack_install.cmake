@@ -66,13 +66,23 @@ endfunction()
 zonepack_install_program(zoned runtime)
 zonepack_install_program(zonectl runtime)
 zonepack_install_program(zonepack tools)
+zonepack_install_program(zoneloc localizer)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/zonepack/config
-        COMPONENT runtime PATTERN zoned.service EXCLUDE)
+        COMPONENT runtime PATTERN "*.service" EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/config/zoned.service DESTINATION lib/systemd/system COMPONENT runtime)
 install(CODE "${mend}
   zonepack_mend_unit(\"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/systemd/system/zoned.service\"
                      \"\${CMAKE_INSTALL_PREFIX}\")"
         COMPONENT runtime)
+if(TARGET zoneloc)
+  install(FILES ${PROJECT_SOURCE_DIR}/config/zoneloc.service DESTINATION lib/systemd/system COMPONENT localizer)
+  install(CODE "${mend}
+  zonepack_mend_unit(\"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/systemd/system/zoneloc.service\"
+                     \"\${CMAKE_INSTALL_PREFIX}\")"
+          COMPONENT localizer)
+  install(FILES ${PROJECT_SOURCE_DIR}/runtime/localize/camera/CAMERA.md
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/zonepack-localizer COMPONENT localizer)
+endif()
 # For programs in other languages: the files and the socket, byte by byte.
 install(FILES ${PROJECT_SOURCE_DIR}/runtime/pack_format/FORMAT.md ${PROJECT_SOURCE_DIR}/runtime/protocol/PROTOCOL.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT dev)

@@ -86,6 +86,13 @@ echo "zoned: $bytes bytes stripped, of at most $most_zoned_bytes"
 
 # Who builds against the library needs what it was built against, without test libraries and compilers.
 headers=$(grep -e '-dev$' toolchains/packages.txt | grep -vE 'gtest|gmock|benchmark' | paste -sd, | sed 's/,/, /g')
+if [ -x "$build/bin/zoneloc" ]; then
+  package localizer misc "" "zone-wise 3D map memory for mobile robots: camera localizer" <<'BODY'
+zoneloc finds the robot's pose in the images of a camera, among the rooms that
+zoned holds in memory, and gives it to zoned. It needs OpenCV; zoned and
+zonectl do not.
+BODY
+fi
 package tools misc "" "zone-wise 3D map memory for mobile robots: packing of maps" <<'BODY'
 zonepack cuts a SLAM map into zones, such as rooms and corridors, and writes
 one compressed pack per zone, for zoned to load on the robot.

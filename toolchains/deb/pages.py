@@ -9,7 +9,7 @@ import re
 import subprocess
 import sys
 
-PROGRAMS = ("zonepack", "zoned", "zonectl")
+PROGRAMS = ("zonepack", "zoned", "zonectl", "zoneloc")
 FILES = {"FILE", "LOG", "DB", "PATH"}  # what an option takes, and so what completes it
 FOLDERS = {"DIR", "MAP"}
 
@@ -28,7 +28,7 @@ class Help:
         rows = []
         for line in lines:
             heading = re.fullmatch(r"(\S.*):", line)
-            row = re.match(r"  (\S.*?)(?:  +(\S.*))?$", line)
+            row = re.match(r"  (\S.*? REQUIRED) (\S.*)$", line) or re.match(r"  (\S.*?)(?:  +(\S.*))?$", line)
             if heading:
                 rows = self.groups.setdefault(heading[1], [])
             elif row and not line.startswith("   "):

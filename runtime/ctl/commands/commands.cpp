@@ -16,6 +16,7 @@
 #include "platform/terminal.hpp"
 #include "runtime/ctl/commands/answer_json.hpp"
 #include "runtime/ctl/commands/figures.hpp"
+#include "runtime/ctl/commands/localizer_figures.hpp"
 #include "runtime/ctl/commands/session.hpp"
 #include "runtime/ctl/commands/watch_view.hpp"
 #include "runtime/ctl/commands/zone_metrics.hpp"
@@ -68,6 +69,7 @@ void print_status(const wire::Status& status) {
   for (const std::string& complaint : complaints(status)) std::cout << complaint << '\n';
   for (const std::string& line : figure_lines(status)) std::cout << line << '\n';
   for (const std::string& line : line_words(status)) std::cout << "line " << line << '\n';
+  for (const std::string& line : localizer_lines(status)) std::cout << line << '\n';
 }
 
 // One document, to a file or standard output.

@@ -9,6 +9,7 @@
 #include "platform/base/byte_count.hpp"
 #include "platform/base/counted.hpp"
 #include "platform/base/json_text.hpp"
+#include "runtime/ctl/commands/localizer_figures.hpp"
 #include "runtime/pack_format/file/checksum.hpp"
 #include "runtime/serve/status_figures.hpp"
 
@@ -124,6 +125,7 @@ std::string metrics_text(const wire::Status& status) {
   text += timing_metric("zoned_wakeup_seconds", "How late cycles begin, by percentile.",
                         status.wakeup());
   text += line_metrics(status);
+  text += localizer_metrics(status);
   const std::string zone(view_of(status.zone()));
   text += "# HELP zoned_zone_info The robot's own zone.\n# TYPE zoned_zone_info gauge\n";
   if (!zone.empty()) text += "zoned_zone_info{zone=" + json_quoted(zone) + "} 1\n";
@@ -151,6 +153,7 @@ std::string status_json(const wire::Status& status) {
   text += ",\"wakeup_us\":" + timing_json(status.wakeup());
   text += ",\"map_ready_latency_us\":" + timing_json(status.map_ready_latency());
   text += ",\"lines\":" + lines_json(status);
+  text += ",\"localizers\":" + localizers_json(status);
   return text + "}\n";
 }
 

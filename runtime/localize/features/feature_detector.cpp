@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/localize/features/feature_detector.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <opencv2/core.hpp>
+#include <opencv2/features2d.hpp>
+#include <utility>
+#include <vector>
+
+#include "platform/base/require.hpp"
+#include "platform/clock.hpp"
+
+namespace zonepack::localize {
+
+struct FeatureDetector::OpenCv {
+  cv::Ptr<cv::Feature2D> finder, describer;
+  std::vector<cv::KeyPoint> keypoints;
+  cv::Mat descriptors;
+};
+
+FeatureDetector::FeatureDetector(const DetectorSettings& s)
+    : settings_(s), cv_(std::make_unique<OpenCv>()) {
+  cv::setNumThreads(1);
+  const auto orb = [&] {
+    return cv::ORB::create(s.max_features, static_cast<float>(s.scale_factor), s.levels, s.edge_px,
+                           s.first_level, s.wta_k,
+                           s.fast_score ? cv::ORB::FAST_SCORE : cv::ORB::HARRIS_SCORE, s.patch_px,
+                           s.fast_threshold);
+  };
+  switch (s.detector) {
+    case Detector::kGfttOrb:
+      cv_->finder = cv::GFTTDetector::create(s.max_features, s.quality, s.min_distance_px,
+                                             s.block_px, s.harris, s.harris_k);
+      cv_->describer = orb();
+      break;
+    case Detector::kOrb:
+      cv_->finder = cv_->describer = orb();
+      break;
+    case Detector::kSift:
+      cv_->finder = cv_->describer =
+          cv::SIFT::create(s.max_features, s.octave_layers, s.contrast, s.edge_ratio, s.sigma);
+      break;
+    case Detector::kBrisk:
+      cv_->finder = cv_->describer =
+          cv::BRISK::create(s.brisk_threshold, s.brisk_octaves, static_cast<float>(s.brisk_scale));
+      break;
+  }
+}
+
+FeatureDetector::~FeatureDetector() = default;
+
+ImageFeatures FeatureDetector::detect(const GreyImage& image, const CameraModel& camera) {
+  ZP_REQUIRE(image.whole());
+  ImageFeatures out;
+  out.width = image.width;
+  out.height = image.height;
+  out.stamp_ns = image.stamp_ns;
+  out.descriptor_bytes = settings_.descriptor_bytes();
+  // OpenCV has no matrix of constant bytes; it does not write to this one.
+  const cv::Mat pixels(image.height, image.width, CV_8UC1,
+                       const_cast<std::uint8_t*>(image.pixels.data()));  // NOLINT
+  const std::int64_t begin = thread_cpu_ns();
+  cv_->finder->detect(pixels, cv_->keypoints);
+  const auto most = static_cast<std::size_t>(settings_.max_features);
+  if (cv_->keypoints.size() > most)
+    cv::KeyPointsFilter::retainBest(cv_->keypoints, settings_.max_features);
+  const std::int64_t found = thread_cpu_ns();
+  cv_->describer->compute(pixels, cv_->keypoints, cv_->descriptors);
+  const std::size_t count = cv_->keypoints.size();
+  ZP_REQUIRE(count == 0 || cv_->descriptors.cols * static_cast<int>(cv_->descriptors.elemSize()) ==
+                               static_cast<int>(out.descriptor_bytes));
+  std::vector<std::pair<Eigen::Vector2f, int>> order;
+  order.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector2f seen(cv_->keypoints[i].pt.x, cv_->keypoints[i].pt.y);
+    order.emplace_back(
+        camera.distorted() ? camera.undistort(seen.cast<double>()).cast<float>().eval() : seen,
+        static_cast<int>(i));
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first.x() < b.first.x(); });
+  out.seen_px.reserve(count);
+  out.px.reserve(count);
+  out.descriptors.resize(count * out.descriptor_bytes);
+  for (std::size_t i = 0; i < count; ++i) {
+    const cv::KeyPoint& keypoint = cv_->keypoints[static_cast<std::size_t>(order[i].second)];
+    out.seen_px.emplace_back(keypoint.pt.x, keypoint.pt.y);
+    out.px.push_back(order[i].first);
+    std::memcpy(out.descriptors.data() + i * out.descriptor_bytes,
+                cv_->descriptors.ptr(order[i].second), out.descriptor_bytes);
+  }
+  out.detect_ns = found - begin;
+  out.describe_ns = thread_cpu_ns() - found;
+  return out;
+}
+
+}  // namespace zonepack::localize

@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/localize/query/localizer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "platform/clock.hpp"
+#include "runtime/localize/features/feature_detector.hpp"
+#include "runtime/localize/query/candidates.hpp"
+#include "runtime/localize/query/matching.hpp"
+#include "runtime/localize/solve/planar_ransac.hpp"
+#include "runtime/localize/solve/refine.hpp"
+#include "runtime/odometry/se2.hpp"
+
+namespace zonepack::localize {
+namespace {
+
+// Distances in pixels are of a camera whose focal length is 385 px, and scale with it.
+constexpr double kUsualFocal_px = 385;
+constexpr double kInlier_px = 3;
+constexpr double kSecondPass_px = 8;
+constexpr double kSecondPassDistance = 80;  // of 256 bits
+constexpr double kVisible_px = 8;
+// Poses that are worth a second pass: the best of RANSAC and those nearly as good.
+constexpr std::size_t kStarts = 3;
+constexpr double kStartShare = 0.85;
+constexpr std::size_t kFirstPassSignatures = 12;
+constexpr std::size_t kSecondPassSignatures = 60;
+constexpr double kMostTilt_rad = 6 * std::numbers::pi / 180;
+constexpr double kMostLift_m = 0.12;
+constexpr double kDistinct_px = 4;
+// By chance 4 in 100 features near a projected point agree with it, weighted by likeness: a dense
+// map gives more wrong inliers than a sparse one. Measured with priors at false places.
+constexpr double kChance = 0.04, kLeastSure = 5.4;
+constexpr double kMostSigma_m = 0.065;  // a vaguer pose is of no use
+// Errors of the map itself, which no number of inliers averages out.
+constexpr double kMapSigma_m = 0.01;
+constexpr double kMapSigma_rad = 0.1 * std::numbers::pi / 180;
+// Without a prior
+constexpr std::size_t kLostPlaces = 5;
+constexpr double kLostReach_m = 3, kLostTurn_rad = 60 * std::numbers::pi / 180;
+constexpr double kRivalShare = 0.6;
+constexpr double kSamePlace_m = 1, kSameYaw_rad = 20 * std::numbers::pi / 180;
+
+class StageClock {
+ public:
+  explicit StageClock(QueryResult& result) : result_(result), last_(thread_cpu_ns()) {}
+  void end(Stage stage) {
+    const std::int64_t now = thread_cpu_ns();
+    result_.cpu_ns[static_cast<std::size_t>(stage)] += now - last_;
+    result_.cpu_total_ns += now - last_;
+    last_ = now;
+  }
+
+ private:
+  QueryResult& result_;
+  std::int64_t last_;
+};
+
+double sure_beyond_chance(const QueryResult& result) {
+  return result.sure - kChance * result.visible;
+}
+
+std::size_t count_features(const std::vector<Sighting>& sightings) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    count += i == 0 || sightings[i].feature != sightings[i - 1].feature ? 1 : 0;
+  }
+  return count;
+}
+
+}  // namespace
+
+struct Localizer::State {
+  CameraModel camera;
+  FeatureDetector detector;
+  QueryOptions options;
+  double scale;  // of distances in pixels
+
+  void locate_near(const ImageFeatures& image, std::span<const MapFeatures* const> map,
+                   const QueryPrior& prior, QueryResult& result) const;
+  void locate_anywhere(const ImageFeatures& image, std::span<const MapFeatures* const> map,
+                       QueryResult& result) const;
+  void polish(const ImageFeatures& image, const Candidates& candidates,
+              const Eigen::Isometry3d& start, QueryResult& result) const;
+  void count(const ImageFeatures& image, const Candidates& candidates,
+             std::vector<Sighting>& sightings, const Eigen::Isometry3d& T_map_base,
+             QueryResult& result) const;
+  void judge(const Candidates& candidates, const QueryPrior& prior, QueryResult& result) const;
+  MatchOptions matching() const {
+    MatchOptions out;
+    out.binary = detector.settings().binary();
+    out.margin_px *= scale;
+    return out;
+  }
+};
+
+// What the pose explains: inliers, distinct ones and where they are. Leaves only inliers.
+void Localizer::State::count(const ImageFeatures& image, const Candidates& candidates,
+                             std::vector<Sighting>& sightings, const Eigen::Isometry3d& T_map_base,
+                             QueryResult& result) const {
+  const Eigen::Isometry3d T_camera_map = (T_map_base * camera.T_base_camera).inverse();
+  const double most2 = std::pow(kInlier_px * scale, 2);
+  std::array<bool, 16> cells{};
+  std::vector<Eigen::Vector2d> distinct;
+  std::vector<double> weights;  // of each
+  std::vector<int> of_signature(candidates.reach.size());
+  double sum2 = 0;
+  result.matches = static_cast<int>(sightings.size());
+  result.inliers = 0;
+  for (const Sighting& sighting : sightings) {
+    const Eigen::Vector3d at = T_camera_map * sighting.p_map;
+    const double e2 = squared_error(camera, at, sighting.px);
+    const bool inlier = e2 <= most2;
+    if (options.keep_matches) {
+      DrawnMatch drawn;
+      drawn.x_px = image.seen_px[sighting.feature].x();
+      drawn.y_px = image.seen_px[sighting.feature].y();
+      if (at.z() > kLeastDepth) {
+        Eigen::Vector2d seen(camera.cx + camera.fx * at.x() / at.z(),
+                             camera.cy + camera.fy * at.y() / at.z());
+        if (camera.distorted()) seen = camera.distort(seen);
+        drawn.map_x_px = static_cast<float>(seen.x());
+        drawn.map_y_px = static_cast<float>(seen.y());
+      }
+      drawn.p_map = sighting.p_map.cast<float>();
+      drawn.signature = candidates.reach[sighting.signature].map->id;
+      drawn.inlier = inlier;
+      result.drawn.push_back(drawn);
+    }
+    if (!inlier) continue;
+    sum2 += e2;
+    ++result.inliers;
+    ++of_signature[sighting.signature];
+    const double apart2 = std::pow(kDistinct_px * scale, 2);
+    const auto same = std::find_if(
+        distinct.begin(), distinct.end(),
+        [&](const Eigen::Vector2d& px) { return (px - sighting.px).squaredNorm() < apart2; });
+    if (same != distinct.end()) {
+      double& best = weights[static_cast<std::size_t>(same - distinct.begin())];
+      best = std::max(best, sighting.weight);
+      continue;
+    }
+    weights.push_back(sighting.weight);
+    distinct.push_back(sighting.px);
+    const int column = std::clamp(static_cast<int>(sighting.px.x() * 4 / camera.width), 0, 3);
+    const int row = std::clamp(static_cast<int>(sighting.px.y() * 4 / camera.height), 0, 3);
+    cells[static_cast<std::size_t>(row * 4 + column)] = true;
+  }
+  result.distinct = static_cast<int>(distinct.size());
+  result.sure = std::accumulate(weights.begin(), weights.end(), 0.0);
+  result.cells = static_cast<int>(std::count(cells.begin(), cells.end(), true));
+  result.residual_px = result.inliers > 0 ? std::sqrt(sum2 / result.inliers) : 0;
+  if (!of_signature.empty()) {
+    const auto most = std::max_element(of_signature.begin(), of_signature.end());
+    const MapFeatures& best =
+        *candidates.reach[static_cast<std::size_t>(most - of_signature.begin())].map;
+    result.best = best.id;
+    result.best_zone = best.zone;
+  }
+}
+
+// From a pose on the plane to the pose in space, over the points of all candidates.
+void Localizer::State::polish(const ImageFeatures& image, const Candidates& candidates,
+                              const Eigen::Isometry3d& start, QueryResult& result) const {
+  PlanePrior plane;
+  plane.floor_z_m = candidates.floor_z_m;
+  RefineOptions refining;
+  refining.start_px = 4 * scale;
+  refining.end_px = 2 * scale;
+  refining.sigma_px = scale;
+  const std::span<const Candidate> all(candidates.reach.data(),
+                                       std::min(kSecondPassSignatures, candidates.reach.size()));
+  Refined refined;
+  refined.T_map_base = start;
+  std::vector<Sighting> sightings;
+  MatchOptions second = matching();
+  second.most_distance = kSecondPassDistance;  // the place says more than in the first pass
+  for (const double radius : {kSecondPass_px, kSecondPass_px * 0.75}) {
+    sightings = match_projected(image, all, camera, refined.T_map_base, radius * scale, second);
+    if (sightings.size() < 4) break;
+    refined = refine(sightings, camera, refined.T_map_base, plane, refining);
+    if (!refined.valid) break;
+  }
+  count(image, candidates, sightings, refined.T_map_base, result);
+  result.visible = count_visible(image, all, camera, refined.T_map_base, kVisible_px * scale);
+  result.found = refined.valid;
+  result.T_map_base = refined.T_map_base;
+  result.pose = flatten(refined.T_map_base);
+  // Several signatures see one feature with the same error: only distinct ones count.
+  const double repeated =
+      std::max(1.0, static_cast<double>(result.inliers) / std::max(1, result.distinct));
+  const double worse = repeated * std::max(1.0, std::pow(result.residual_px / scale, 2));
+  const Covariance2& c = refined.covariance;
+  result.covariance = {c.xx * worse + kMapSigma_m * kMapSigma_m,
+                       c.xy * worse,
+                       c.x_yaw * worse,
+                       c.yy * worse + kMapSigma_m * kMapSigma_m,
+                       c.y_yaw * worse,
+                       c.yaw_yaw * worse + kMapSigma_rad * kMapSigma_rad};
+}
+
+void Localizer::State::judge(const Candidates& candidates, const QueryPrior& prior,
+                             QueryResult& result) const {
+  const auto refuse = [&](Reason reason) { result.reason = reason; };
+  result.accepted = false;
+  if (!result.found || result.distinct < options.needed) return refuse(Reason::kFewInliers);
+  if (sure_beyond_chance(result) < kLeastSure) return refuse(Reason::kChance);
+  if (result.cells < options.needed_cells) return refuse(Reason::kGathered);
+  const Eigen::Vector3d up = result.T_map_base.linear().col(2);
+  const double lift_m = result.T_map_base.translation().z() - candidates.floor_z_m;
+  if (up.z() < std::cos(kMostTilt_rad) || std::abs(lift_m) > kMostLift_m) {
+    return refuse(Reason::kNotLevel);
+  }
+  if (position_sigma_m(result.covariance) > kMostSigma_m) return refuse(Reason::kUnsure);
+  // 4 standard deviations of three values: 1 in 900 of right ones.
+  Covariance2 around = prior.covariance;
+  around.xx += 0.01;
+  around.yy += 0.01;
+  around.yaw_yaw += 1e-3;
+  if (mahalanobis2({prior.T_map_base, around}, {result.pose, result.covariance}) > 18) {
+    return refuse(Reason::kFarFromPrior);
+  }
+  result.accepted = true;
+  result.reason = Reason::kAccepted;
+}
+
+void Localizer::State::locate_near(const ImageFeatures& image,
+                                   std::span<const MapFeatures* const> map, const QueryPrior& prior,
+                                   QueryResult& result) const {
+  StageClock clock(result);
+  const Candidates candidates = choose_candidates(map, camera, prior, kFirstPassSignatures);
+  result.signatures = static_cast<int>(candidates.best.size());
+  if (candidates.nearest != nullptr) {
+    result.nearest = candidates.nearest->id;
+    result.nearest_zone = candidates.nearest->zone;
+    result.nearest_m = candidates.nearest_m;
+    result.nearest_turn_rad = candidates.nearest_turn_rad;
+  }
+  clock.end(Stage::kSelect);
+  if (candidates.best.empty()) {
+    result.reason = candidates.near == 0 ? Reason::kNoSignature : Reason::kNotInView;
+    return;
+  }
+  const std::vector<Sighting> sightings =
+      match_in_windows(image, candidates.best, camera, prior, candidates.floor_z_m, matching());
+  result.matches = static_cast<int>(sightings.size());
+  clock.end(Stage::kMatch);
+  if (count_features(sightings) < 4) {
+    result.reason = Reason::kFewMatches;
+    return;
+  }
+  RansacOptions ransac;
+  ransac.seed = options.seed;
+  ransac.threshold_px *= scale;
+  ransac.most_poses = kStarts;
+  const PoseGate gate{prior.T_map_base, 0.3 + 3.5 * position_sigma_m(prior.covariance),
+                      0.05 + 3.5 * std::sqrt(std::max(0.0, prior.covariance.yaw_yaw))};
+  const auto planar = find_planar(sightings, camera, candidates.floor_z_m, gate, ransac);
+  clock.end(Stage::kRansac);
+  if (planar.empty()) {
+    result.reason = Reason::kFewInliers;
+    return;
+  }
+  PlanePrior plane;
+  plane.floor_z_m = candidates.floor_z_m;
+  RefineOptions refining;
+  refining.start_px = 8 * scale;
+  refining.end_px = 3 * scale;
+  refining.sigma_px = scale;
+  std::optional<QueryResult> best;
+  for (const PlanarPose& start : planar) {
+    if (start.score < kStartShare * planar.front().score) break;
+    const Eigen::Isometry3d lifted = lift(start.pose, candidates.floor_z_m);
+    const Refined first = refine(sightings, camera, lifted, plane, refining);
+    QueryResult here = result;
+    polish(image, candidates, first.valid ? first.T_map_base : lifted, here);
+    if (!best || sure_beyond_chance(here) > sure_beyond_chance(*best)) best = std::move(here);
+  }
+  result = std::move(*best);
+  judge(candidates, prior, result);
+  clock.end(Stage::kRefine);
+}
+
+// Every signature by brute force; those that a pose on the plane explains best are looked at with
+// their neighbours.
+void Localizer::State::locate_anywhere(const ImageFeatures& image,
+                                       std::span<const MapFeatures* const> map,
+                                       QueryResult& result) const {
+  StageClock clock(result);
+  struct Place {
+    PlanarPose planar;
+    const MapFeatures* map;
+  };
+  std::vector<Place> places;
+  for (const MapFeatures* const one : map) {
+    if (one->points.empty()) continue;
+    ++result.signatures;
+    const std::vector<Sighting> sightings = match_everywhere(image, *one, matching());
+    clock.end(Stage::kMatch);
+    if (sightings.size() < 5) continue;
+    RansacOptions ransac;
+    ransac.seed = options.seed;
+    ransac.iterations = 120;
+    ransac.threshold_px *= scale;
+    const PoseGate gate{flatten(one->T_map_base), kLostReach_m, kLostTurn_rad};
+    const auto planar =
+        find_planar(sightings, camera, one->T_map_base.translation().z(), gate, ransac);
+    clock.end(Stage::kRansac);
+    if (!planar.empty() && planar.front().features >= 5) places.push_back({planar.front(), one});
+  }
+  if (result.signatures == 0) {
+    result.reason = Reason::kNoSignature;
+    return;
+  }
+  std::stable_sort(places.begin(), places.end(),
+                   [](const Place& a, const Place& b) { return a.planar.score > b.planar.score; });
+  const auto same = [](const Pose2& a, const Pose2& b) {
+    return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m) < kSamePlace_m &&
+           std::abs(std::remainder(a.yaw_rad - b.yaw_rad, 2 * std::numbers::pi)) < kSameYaw_rad;
+  };
+  std::vector<QueryResult> found;
+  std::vector<Pose2> tried;
+  for (const Place& place : places) {
+    if (tried.size() >= kLostPlaces) break;
+    if (std::any_of(tried.begin(), tried.end(),
+                    [&](const Pose2& other) { return same(other, place.planar.pose); })) {
+      continue;
+    }
+    tried.push_back(place.planar.pose);
+    const QueryPrior prior{place.planar.pose, {0.04, 0, 0, 0.04, 0, 0.002}};
+    QueryResult local;
+    locate_near(image, map, prior, local);
+    result.cpu_total_ns += local.cpu_total_ns;
+    for (std::size_t i = 0; i < kStages; ++i) result.cpu_ns[i] += local.cpu_ns[i];
+    if (local.found) found.push_back(std::move(local));
+  }
+  if (found.empty()) {
+    result.reason = places.empty() ? Reason::kFewMatches : Reason::kFewInliers;
+    return;
+  }
+  std::stable_sort(found.begin(), found.end(), [](const QueryResult& a, const QueryResult& b) {
+    return a.distinct > b.distinct;
+  });
+  QueryResult& best = found.front();
+  for (std::size_t i = 1; i < found.size() && best.accepted; ++i) {
+    if (!same(best.pose, found[i].pose) && found[i].distinct > kRivalShare * best.distinct) {
+      best.accepted = false;
+      best.reason = Reason::kRival;
+    }
+  }
+  best.cpu_ns = result.cpu_ns;
+  best.cpu_total_ns = result.cpu_total_ns;
+  best.signatures = result.signatures;
+  best.features = result.features;
+  result = std::move(best);
+}
+
+Localizer::Localizer(const CameraModel& camera, const DetectorSettings& detector,
+                     const QueryOptions& options)
+    : state_(new State{camera, FeatureDetector(detector), options, camera.fx / kUsualFocal_px}) {}
+Localizer::~Localizer() = default;
+Localizer::Localizer(Localizer&&) noexcept = default;
+Localizer& Localizer::operator=(Localizer&&) noexcept = default;
+
+const CameraModel& Localizer::camera() const noexcept { return state_->camera; }
+QueryOptions& Localizer::options() noexcept { return state_->options; }
+
+std::optional<ImageFeatures> Localizer::detect(const GreyImage& image) {
+  if (!image.whole() || image.width != state_->camera.width ||
+      image.height != state_->camera.height) {
+    return std::nullopt;
+  }
+  return state_->detector.detect(image, state_->camera);
+}
+
+QueryResult Localizer::locate(const ImageFeatures& image, std::span<const MapFeatures* const> map,
+                              const std::optional<QueryPrior>& prior) {
+  QueryResult result;
+  result.features = static_cast<int>(image.size());
+  if (result.features < state_->options.needed) {
+    result.reason = Reason::kNoFeatures;
+    return result;
+  }
+  if (prior) {
+    state_->locate_near(image, map, *prior, result);
+  } else {
+    state_->locate_anywhere(image, map, result);
+  }
+  return result;
+}
+
+QueryResult Localizer::query(const GreyImage& image, std::span<const MapFeatures* const> map,
+                             const std::optional<QueryPrior>& prior) {
+  const auto features = detect(image);
+  if (!features) {
+    QueryResult result;
+    result.reason = Reason::kWrongSize;
+    return result;
+  }
+  QueryResult result = locate(*features, map, prior);
+  result.cpu_ns[static_cast<std::size_t>(Stage::kDetect)] = features->detect_ns;
+  result.cpu_ns[static_cast<std::size_t>(Stage::kDescribe)] = features->describe_ns;
+  result.cpu_total_ns += features->detect_ns + features->describe_ns;
+  return result;
+}
+
+}  // namespace zonepack::localize

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/localize/query/matching.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "runtime/localize/features/hamming.hpp"
+#include "runtime/localize/query/feature_grid.hpp"
+
+namespace zonepack::localize {
+namespace {
+
+// Distances of float descriptors (SIFT: 128 values up to about 180, length 512) on the scale of 256
+// bits, so that one set of limits serves both.
+constexpr float kFloatScale = 256.0F / 700.0F;
+
+std::uint16_t distance_of_floats(const std::uint8_t* a, const std::uint8_t* b, std::size_t bytes) {
+  float sum = 0;
+  for (std::size_t i = 0; i + sizeof(float) <= bytes; i += sizeof(float)) {
+    float x = 0, y = 0;
+    std::memcpy(&x, a + i, sizeof x);
+    std::memcpy(&y, b + i, sizeof y);
+    sum += (x - y) * (x - y);
+  }
+  const float distance = std::sqrt(sum) * kFloatScale * 16;  // 16 steps a bit
+  return static_cast<std::uint16_t>(std::min(distance, 65'000.0F));
+}
+
+// Distances of one descriptor to rows of others, in steps of which `unit` make one of 256 bits.
+struct Metric {
+  bool binary;
+  std::size_t bytes;
+  double unit() const { return binary ? static_cast<double>(bytes) / 32 : 16; }
+  void rows(const std::uint8_t* one, const std::uint8_t* rows, std::size_t count,
+            std::uint16_t* out) const {
+    if (binary) return hamming_rows(one, rows, count, bytes, out);
+    for (std::size_t i = 0; i < count; ++i)
+      out[i] = distance_of_floats(one, rows + i * bytes, bytes);
+  }
+  std::uint16_t one(const std::uint8_t* a, const std::uint8_t* b) const {
+    std::uint16_t out = 0;
+    rows(a, b, 1, &out);
+    return out;
+  }
+};
+
+constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+
+struct Best {
+  std::uint32_t index = kNone;
+  std::uint16_t first = 0xFFFF, second = 0xFFFF;
+  void offer(std::uint32_t candidate, std::uint16_t distance) {
+    if (distance < first) {
+      second = first;
+      first = distance;
+      index = candidate;
+    } else if (distance < second) {
+      second = distance;
+    }
+  }
+};
+
+Eigen::Vector3f point_of(const MapPoint& point) { return {point.x_m, point.y_m, point.z_m}; }
+
+Sighting sighting_of(const ImageFeatures& image, const MapFeatures& map, std::uint32_t feature,
+                     std::uint32_t signature, std::uint32_t row, double distance) {
+  // Of 256 bits: 30 differ in most right matches, 85 in few.
+  const double weight = std::clamp((85 - distance) / (85 - 30), 0.05, 1.0);
+  return {map.T_map_base * point_of(map.points[row]).cast<double>(),
+          image.px[feature].cast<double>(),
+          feature,
+          weight,
+          signature,
+          row};
+}
+
+void sort_by_feature(std::vector<Sighting>& sightings) {
+  std::stable_sort(sightings.begin(), sightings.end(),
+                   [](const Sighting& a, const Sighting& b) { return a.feature < b.feature; });
+}
+
+// A pinhole in floats, for the loops over all points.
+struct Pinhole {
+  float fx, fy, cx, cy, width, height;
+  explicit Pinhole(const CameraModel& camera)
+      : fx(static_cast<float>(camera.fx)),
+        fy(static_cast<float>(camera.fy)),
+        cx(static_cast<float>(camera.cx)),
+        cy(static_cast<float>(camera.cy)),
+        width(static_cast<float>(camera.width)),
+        height(static_cast<float>(camera.height)) {}
+  Eigen::Vector2f project(const Eigen::Vector3f& p) const {
+    return {cx + fx * p.x() / p.z(), cy + fy * p.y() / p.z()};
+  }
+};
+
+// Where one candidate's points are in the image, as far as the prior knows.
+class Windows {
+ public:
+  Windows(const CameraModel& camera, const QueryPrior& prior, double floor_z_m,
+          const MatchOptions& options)
+      : pinhole_(camera),
+        sigmas_(static_cast<float>(options.sigmas)),
+        margin_(static_cast<float>(options.margin_px)) {
+    const std::array<Pose2, 7> poses = spanning_poses(prior);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      T_camera_map_[i] = (lift(poses[i], floor_z_m) * camera.T_base_camera).inverse();
+    }
+  }
+  void use(const MapFeatures& map) {
+    for (std::size_t i = 0; i < T_camera_map_.size(); ++i) {
+      const Eigen::Isometry3f T = (T_camera_map_[i] * map.T_map_base).cast<float>();
+      rotation_[i] = T.linear();
+      shift_[i] = T.translation();
+    }
+  }
+
+  struct Window {
+    Eigen::Vector2f middle, half;
+  };
+  // False: the camera cannot see it.
+  bool find(const Eigen::Vector3f& p_base, Window& out) const {
+    const Eigen::Vector3f p = rotation_[0] * p_base + shift_[0];
+    if (p.z() < 0.2F) return false;
+    out.middle = pinhole_.project(p);
+    Eigen::Vector2f square = Eigen::Vector2f::Zero();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Eigen::Vector2f most = Eigen::Vector2f::Zero();
+      for (std::size_t i = 1 + 2 * axis; i < 3 + 2 * axis; ++i) {
+        const Eigen::Vector3f moved = rotation_[i] * p_base + shift_[i];
+        if (moved.z() < 0.1F) {
+          most = Eigen::Vector2f::Constant(1e4F);
+          break;
+        }
+        most = most.cwiseMax((pinhole_.project(moved) - out.middle).cwiseAbs());
+      }
+      square += most.cwiseAbs2();
+    }
+    out.half = (square.cwiseSqrt() * sigmas_).array() + margin_;
+    return out.middle.x() + out.half.x() > 0 && out.middle.y() + out.half.y() > 0 &&
+           out.middle.x() - out.half.x() < pinhole_.width &&
+           out.middle.y() - out.half.y() < pinhole_.height;
+  }
+
+ private:
+  Pinhole pinhole_;
+  float sigmas_, margin_;
+  std::array<Eigen::Isometry3d, 7> T_camera_map_;
+  std::array<Eigen::Matrix3f, 7> rotation_;
+  std::array<Eigen::Vector3f, 7> shift_;
+};
+
+// Calls fn(candidate, row, where in the image) for all points that a camera at the pose sees.
+template <typename Fn>
+void for_each_seen(std::span<const Candidate> candidates, const CameraModel& camera,
+                   const Eigen::Isometry3d& T_map_base, float margin_px, Fn&& fn) {
+  const Pinhole pinhole(camera);
+  const Eigen::Isometry3d T_camera_map = (T_map_base * camera.T_base_camera).inverse();
+  for (std::uint32_t s = 0; s < candidates.size(); ++s) {
+    const MapFeatures& map = *candidates[s].map;
+    const Eigen::Isometry3f T = (T_camera_map * map.T_map_base).cast<float>();
+    const Eigen::Matrix3f rotation = T.linear();
+    const Eigen::Vector3f shift = T.translation();
+    for (std::uint32_t row = 0; row < map.points.size(); ++row) {
+      const Eigen::Vector3f p = rotation * point_of(map.points[row]) + shift;
+      if (p.z() < 0.2F) continue;
+      const Eigen::Vector2f at = pinhole.project(p);
+      if (at.x() < -margin_px || at.y() < -margin_px || at.x() > pinhole.width + margin_px ||
+          at.y() > pinhole.height + margin_px) {
+        continue;
+      }
+      fn(s, row, at);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Sighting> match_in_windows(const ImageFeatures& image,
+                                       std::span<const Candidate> candidates,
+                                       const CameraModel& camera, const QueryPrior& prior,
+                                       double floor_z_m, const MatchOptions& options) {
+  const Metric metric{options.binary, image.descriptor_bytes};
+  const double most = options.most_distance * metric.unit();
+  Windows windows(camera, prior, floor_z_m, options);
+  std::vector<std::uint16_t> distances(image.size());
+  std::vector<float> columns, lines;
+  for (const Eigen::Vector2f& px : image.px) {
+    columns.push_back(px.x());
+    lines.push_back(px.y());
+  }
+  std::vector<Best> of_feature(image.size());
+  std::vector<Best> of_row;
+  std::vector<Sighting> out;
+  for (std::uint32_t s = 0; s < candidates.size(); ++s) {
+    const MapFeatures& map = *candidates[s].map;
+    windows.use(map);
+    std::fill(of_feature.begin(), of_feature.end(), Best{});
+    of_row.assign(map.points.size(), Best{});
+    for (std::uint32_t row = 0; row < map.points.size(); ++row) {
+      Windows::Window window;
+      if (!windows.find(point_of(map.points[row]), window)) continue;
+      const float left = window.middle.x() - window.half.x();
+      const float right = window.middle.x() + window.half.x();
+      const auto first = static_cast<std::uint32_t>(
+          std::lower_bound(columns.begin(), columns.end(), left) - columns.begin());
+      const auto end = static_cast<std::uint32_t>(
+          std::upper_bound(columns.begin(), columns.end(), right) - columns.begin());
+      metric.rows(map.descriptors.data() + row * metric.bytes, image.descriptor(first), end - first,
+                  distances.data() + first);
+      const float top = window.middle.y() - window.half.y();
+      const float bottom = window.middle.y() + window.half.y();
+      for (std::uint32_t i = first; i < end; ++i) {
+        if (lines[i] < top || lines[i] > bottom) continue;
+        of_row[row].offer(i, distances[i]);
+        of_feature[i].offer(row, distances[i]);
+      }
+    }
+    for (std::uint32_t row = 0; row < of_row.size(); ++row) {
+      const Best& best = of_row[row];
+      if (best.index == kNone || best.first > most) continue;
+      if (best.first > options.ratio * best.second || of_feature[best.index].index != row) continue;
+      out.push_back(sighting_of(image, map, best.index, s, row, best.first / metric.unit()));
+    }
+  }
+  sort_by_feature(out);
+  return out;
+}
+
+std::vector<Sighting> match_projected(const ImageFeatures& image,
+                                      std::span<const Candidate> candidates,
+                                      const CameraModel& camera,
+                                      const Eigen::Isometry3d& T_map_base, double radius_px,
+                                      const MatchOptions& options) {
+  const Metric metric{options.binary, image.descriptor_bytes};
+  const double most = options.most_distance * metric.unit();
+  const FeatureGrid grid(image);
+  std::vector<Best> of_feature(image.size());
+  std::vector<std::uint32_t> touched;
+  std::vector<Sighting> out;
+  std::uint32_t signature = kNone;
+  const auto close = [&] {
+    for (const std::uint32_t feature : touched) {
+      out.push_back(sighting_of(image, *candidates[signature].map, feature, signature,
+                                of_feature[feature].index,
+                                of_feature[feature].first / metric.unit()));
+      of_feature[feature] = Best{};
+    }
+    touched.clear();
+  };
+  const auto radius = static_cast<float>(radius_px);
+  for_each_seen(candidates, camera, T_map_base, radius,
+                [&](std::uint32_t s, std::uint32_t row, const Eigen::Vector2f& at) {
+                  if (s != signature) close();
+                  signature = s;
+                  const MapFeatures& map = *candidates[s].map;
+                  Best best;
+                  grid.for_each_near(at.x(), at.y(), radius, [&](std::uint32_t feature) {
+                    best.offer(feature, metric.one(map.descriptors.data() + row * metric.bytes,
+                                                   image.descriptor(feature)));
+                  });
+                  if (best.index == kNone || best.first > most) return;
+                  Best& held = of_feature[best.index];
+                  if (held.index == kNone) touched.push_back(best.index);
+                  held.offer(row, best.first);
+                });
+  close();
+  sort_by_feature(out);
+  return out;
+}
+
+std::vector<Sighting> match_everywhere(const ImageFeatures& image, const MapFeatures& map,
+                                       const MatchOptions& options) {
+  const Metric metric{options.binary, image.descriptor_bytes};
+  const double most = options.most_distance * metric.unit();
+  std::vector<std::uint16_t> distances(image.size());
+  std::vector<Best> of_feature(image.size());
+  std::vector<Best> of_row(map.points.size());
+  for (std::uint32_t row = 0; row < map.points.size(); ++row) {
+    metric.rows(map.descriptors.data() + row * metric.bytes, image.descriptors.data(), image.size(),
+                distances.data());
+    for (std::uint32_t i = 0; i < image.size(); ++i) {
+      of_row[row].offer(i, distances[i]);
+      of_feature[i].offer(row, distances[i]);
+    }
+  }
+  std::vector<Sighting> out;
+  for (std::uint32_t row = 0; row < of_row.size(); ++row) {
+    const Best& best = of_row[row];
+    if (best.index == kNone || best.first > most) continue;
+    if (best.first > options.ratio * best.second || of_feature[best.index].index != row) continue;
+    out.push_back(sighting_of(image, map, best.index, 0, row, best.first / metric.unit()));
+  }
+  sort_by_feature(out);
+  return out;
+}
+
+int count_visible(const ImageFeatures& image, std::span<const Candidate> candidates,
+                  const CameraModel& camera, const Eigen::Isometry3d& T_map_base,
+                  double radius_px) {
+  const FeatureGrid grid(image);
+  std::vector<bool> seen(image.size());
+  const auto radius = static_cast<float>(radius_px);
+  for_each_seen(candidates, camera, T_map_base, radius,
+                [&](std::uint32_t, std::uint32_t, const Eigen::Vector2f& at) {
+                  grid.for_each_near(at.x(), at.y(), radius,
+                                     [&](std::uint32_t feature) { seen[feature] = true; });
+                });
+  return static_cast<int>(std::count(seen.begin(), seen.end(), true));
+}
+
+}  // namespace zonepack::localize

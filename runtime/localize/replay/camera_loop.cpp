@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/localize/replay/camera_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "runtime/odometry/se2.hpp"
+
+namespace zonepack::localize {
+namespace {
+
+// An image may come so long before the first frame of the bus.
+constexpr std::int64_t kBeforeStart_ns = 500'000'000;
+constexpr std::size_t kMostWarnings = 5;
+
+}  // namespace
+
+QueryPrior prior_at(std::int64_t stamp_ns, const PoseEstimate& estimate) noexcept {
+  const double back_s = static_cast<double>(stamp_ns - estimate.t_ns) * 1e-9;
+  const double s = std::clamp(back_s, -0.5, 0.5);
+  const Pose2 motion =
+      along_arc(estimate.speed_m_s * s, estimate.sideways_m_s * s, estimate.yaw_rate_rad_s * s);
+  return {compose(estimate.T_map_base, motion), estimate.covariance};
+}
+
+CameraLoop::CameraLoop(std::vector<LoopImage> images, ImageFinder find, const Options& options)
+    : images_(std::move(images)),
+      find_(std::move(find)),
+      options_(options),
+      features_(options.descriptor_bytes) {}
+
+void CameraLoop::after_cycle(const FixMoment& moment, std::vector<PoseCorrection>& fixes) {
+  if (!start_ns_) {
+    start_ns_ = moment.now_ns;
+    while (next_ < images_.size() && images_[next_].stamp_ns < moment.now_ns - kBeforeStart_ns) {
+      ++next_;
+    }
+  }
+  end_ns_ = moment.now_ns;
+  if (!found_ns_ && moment.state.pose.trusted) {
+    found_ns_ = moment.now_ns;
+    found_after_views_ = views_.size();
+  }
+  while (next_ < images_.size() &&
+         images_[next_].stamp_ns + options_.latency_ns / 2 <= moment.now_ns) {
+    look(images_[next_++], moment, fixes);
+    if (tell_) tell_(next_, images_.size());
+  }
+}
+
+void CameraLoop::look(const LoopImage& image, const FixMoment& moment,
+                      std::vector<PoseCorrection>& fixes) {
+  LoopView& view = views_.emplace_back();
+  view.image = image;
+  if (!moment.state.pose.valid) return;
+  const QueryPrior prior = prior_at(image.stamp_ns, moment.state.pose);
+  const auto map = features_.in_reach_of(prior, moment.resident);
+  view.offered = static_cast<int>(map.size());
+  auto result = find_(image, map, prior);
+  if (!result) {
+    view.kind = LoopView::Kind::kUnreadable;
+    if (warnings_.size() < kMostWarnings) warnings_.push_back(result.error().message);
+    return;
+  }
+  view.kind = LoopView::Kind::kQueried;
+  view.result = std::move(*result);
+  if (!view.result.accepted) return;
+  view.fix.stamp_ns = image.stamp_ns;
+  view.fix.received_ns = std::max(image.stamp_ns + options_.latency_ns, moment.now_ns + 1);
+  view.fix.T_map_base = view.result.pose;
+  view.fix.sigma_x_m = std::sqrt(view.result.covariance.xx);
+  view.fix.sigma_y_m = std::sqrt(view.result.covariance.yy);
+  view.fix.sigma_yaw_rad = std::sqrt(view.result.covariance.yaw_yaw);
+  fixes.push_back(view.fix);
+}
+
+}  // namespace zonepack::localize

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/localize/replay/loop_command.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <utility>
+
+#include "platform/atomic_file.hpp"
+#include "platform/can_log.hpp"
+#include "runtime/localize/camera/calibration.hpp"
+#include "runtime/localize/camera/image_file.hpp"
+#include "runtime/localize/camera/image_list.hpp"
+#include "runtime/localize/query/localizer.hpp"
+#include "runtime/localize/query/map_folder.hpp"
+#include "runtime/localize/replay/camera_loop.hpp"
+#include "runtime/localize/replay/fixes_file.hpp"
+#include "runtime/localize/replay/loop_figures.hpp"
+#include "runtime/localize/replay/map_error.hpp"
+#include "runtime/replay/replay.hpp"
+#include "runtime/run/baseline.hpp"
+#include "runtime/run/log_faults.hpp"
+#include "runtime/run/log_match.hpp"
+#include "runtime/run/log_time.hpp"
+#include "runtime/run/output_check.hpp"
+#include "runtime/run/run_report.hpp"
+#include "runtime/run/summary_text.hpp"
+
+namespace zonepack::localize {
+namespace {
+
+constexpr const char* kProgram = "zoneloc replay";
+
+void note(const std::string& message) { std::cerr << kProgram << ": " << message << '\n'; }
+
+// Says now and then how far the images are.
+class Progress {
+ public:
+  void operator()(std::size_t done, std::size_t all) {
+    using Seconds = std::chrono::duration<double>;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - told_ < std::chrono::seconds(2) || done == all) return;
+    told_ = now;
+    const double rate = static_cast<double>(done) / Seconds(now - begun_).count();
+    note(std::to_string(done) + " of " + std::to_string(all) + " images, " +
+         std::to_string(std::lround(rate)) + " a second, " +
+         std::to_string(std::lround(static_cast<double>(all - done) / rate)) + " s left");
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now(), told_ = begun_;
+};
+
+// Everything read before the run.
+struct LoopInputs {
+  RunInputs run;
+  MapFolder map;
+  CameraModel camera;
+  std::vector<LoopImage> images;
+  std::vector<BaselineRow> baseline;
+};
+
+// Fails when the list's first image is not of the calibration's size: then none is.
+Outcome<void> check_size(const std::vector<ListedImage>& images, const LoopArguments& arguments,
+                         const CameraModel& camera) {
+  const auto image = read_image(images.front().file);
+  if (!image) return {};  // told when its time comes
+  if (image->width == camera.width && image->height == camera.height) return {};
+  const auto size = [](int width, int height) {
+    return std::to_string(width) + "x" + std::to_string(height);
+  };
+  return failure(images.front().file + ": is " + size(image->width, image->height) + ", but " +
+                 arguments.calibration + " is for images of " + size(camera.width, camera.height) +
+                 "; give the calibration of this camera");
+}
+
+Outcome<LoopInputs> read_inputs(const LoopArguments& arguments) {
+  auto run = read_run_inputs(arguments);
+  if (!run) return run.error();
+  for (const std::string& text : run->warnings) note("warning: " + text);
+  if ((run->settings.memory.payload.mask & mask_of(fb::PayloadKind::Features)) == 0) {
+    return failure(arguments.config +
+                   ": memory.payload leaves out features, which a camera is localized by; add "
+                   "features to it");
+  }
+  auto camera = read_calibration(arguments.calibration);
+  if (!camera) return camera.error();
+  auto listed = read_image_list(arguments.images);
+  if (!listed) return listed.error();
+  if (const auto right = check_size(*listed, arguments, *camera); !right) return right.error();
+  auto map = open_map_folder(run->catalog.folder);
+  if (!map) return map.error();
+  std::vector<BaselineRow> baseline;
+  if (!arguments.baseline.empty()) {
+    auto rows = read_baseline(arguments.baseline);
+    if (!rows) return rows.error();
+    baseline = std::move(*rows);
+  }
+  const LogTime time = LogTime::read(arguments.can, run->settings.can.interface);
+  if (run->truth) run->truth = time.on_first_clock(*run->truth);
+  std::vector<LoopImage> images;
+  for (ListedImage& image : *listed) {
+    images.push_back({time.on_first_clock(image.stamp_ns), image.stamp_ns, std::move(image.file)});
+  }
+  std::stable_sort(images.begin(), images.end(),
+                   [](const LoopImage& a, const LoopImage& b) { return a.stamp_ns < b.stamp_ns; });
+  return LoopInputs{std::move(*run), std::move(*map), *camera, std::move(images),
+                    std::move(baseline)};
+}
+
+ImageFinder finder(Localizer& localizer) {
+  return [&localizer](const LoopImage& image, std::span<const MapFeatures* const> map,
+                      const QueryPrior& prior) -> Outcome<QueryResult> {
+    auto pixels = read_image(image.file);
+    if (!pixels) return pixels.error();
+    pixels->stamp_ns = image.stamp_ns;
+    return localizer.query(*pixels, map, prior);
+  };
+}
+
+Outcome<void> write_figures(const LoopFigures& figures, const LoopArguments& arguments) {
+  Failures failed;
+  const bool json_on_output = arguments.json == "-";
+  std::ostream& output = arguments.events == "-" ? std::cerr : std::cout;
+  output << (json_on_output ? figures_json(figures) : figures_table(figures)) << std::flush;
+  if (!std::cout) failed.add(failure("standard output: cannot be written", ErrorCode::kIo));
+  if (!json_on_output && !arguments.json.empty()) {
+    const auto written = write_file_atomically(arguments.json, figures_json(figures));
+    if (!written) failed.add(cannot_write(arguments.json, written.error()));
+  }
+  return failed.all();
+}
+
+Outcome<void> drive(const LoopArguments& arguments) {
+  if (arguments.start.kind == StartChoice::Kind::kFix) {
+    note(
+        "warning: nothing ever says where the robot is, so no zone is loaded and no image is "
+        "queried: give --start X,Y,YAW_DEG, or --start truth with --truth FILE");
+  }
+  auto inputs = read_inputs(arguments);
+  if (!inputs) return inputs.error();
+  const zonepack::Settings& settings = inputs->run.settings;
+  const TruthTrack* const truth = inputs->run.truth ? &*inputs->run.truth : nullptr;
+  CanLogReader log(arguments.can, settings.can.interface);
+  if (const auto opened = log.open(); !opened) {
+    return failure(log.explain(opened.error()), opened.error().code);
+  }
+  LogMatch frames(log);
+  Localizer localizer(inputs->camera, inputs->map.detector);
+  CameraLoop loop(inputs->images, finder(localizer),
+                  {.latency_ns = std::llround(arguments.latency_s * 1e9),
+                   .descriptor_bytes = inputs->map.detector.descriptor_bytes()});
+  loop.on_progress(Progress());
+  HeadingWatch heading(truth);
+
+  ReplayInput input{inputs->run.catalog, frames};
+  input.truth = truth;
+  input.start = arguments.start;
+  input.cycle = cycle_config(settings);
+  input.most_frames = settings.cycle.most_frames;
+  input.terms = map_terms(arguments, settings);
+  input.events_path = arguments.events;
+  input.fixes = &loop;
+  input.observer = &heading;
+  auto result = replay(std::move(input));
+  tell_log_faults(arguments.can, log.summary());
+  if (!result) return result.error();
+  const std::string mismatch =
+      frames.mismatch(settings.odometry.wheels, arguments.can, log.summary());
+  if (!mismatch.empty()) result->warnings.push_back(mismatch);
+  for (const std::string& text : result->faults) note(text);
+  for (const std::string& text : result->warnings) note("warning: " + text);
+  for (const std::string& text : loop.warnings()) note("warning: " + text);
+  if (loop.views().empty()) {
+    return check_overlap(arguments.images, inputs->images.front().stamp_ns,
+                         inputs->images.back().stamp_ns, arguments.can, frames);
+  }
+
+  // Read after the run, so that it does not count as the localizer's memory.
+  LoopFigures figures = figures_of(loop, result->summary, heading, truth);
+  if (truth != nullptr) {
+    const auto map = MapError::read(inputs->map);
+    if (!map) return map.error();
+    if (!map->empty()) judge_in_map(loop, *truth, *map, figures);
+  }
+  Failures failed;
+  failed.add(result->events_written);
+  if (!arguments.fixes.empty()) failed.add(write_fixes(arguments.fixes, loop.views()));
+  failed.add(write_figures(figures, arguments));
+  if (!arguments.report.empty()) {
+    const RunReportInput run{inputs->run.catalog.folder, arguments.can, result->summary,
+                             result->trace, inputs->baseline};
+    failed.add(report::write_report(arguments.report, make_run_report(run)));
+  }
+  failed.add(check_limits(result->summary));
+  return failed.all();
+}
+
+}  // namespace
+
+int run_loop(const LoopArguments& arguments) {
+  auto done = check_outputs({{"--events", arguments.events, true},
+                             {"--json", arguments.json, true},
+                             {"--fixes", arguments.fixes},
+                             {"--report", arguments.report}});
+  if (done) done = drive(arguments);
+  return done ? 0 : report_failure(kProgram, done.error());
+}
+
+}  // namespace zonepack::localize

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/localize/replay/map_error.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "runtime/client/signature_view.hpp"
+#include "runtime/odometry/se2.hpp"
+#include "runtime/pack_format/file/pack_reader.hpp"
+
+namespace zonepack::localize {
+namespace {
+
+std::optional<Pose2> in_plane(const std::optional<RigidTransform>& m) {
+  if (!m) return std::nullopt;
+  const auto at = [&](std::size_t i) { return static_cast<double>((*m)[i]); };
+  const Pose2 pose{at(3), at(7), std::atan2(at(4), at(0))};
+  return is_finite(pose) ? std::optional(pose) : std::nullopt;
+}
+
+}  // namespace
+
+Outcome<MapError> MapError::read(const MapFolder& map) {
+  MapError error;
+  for (const CatalogZone& zone : map.catalog.zones) {
+    const std::string file = map.catalog.folder + "/" + zone.pack;
+    const auto bad = [&](const Error& why) {
+      return failure(file + ": zone '" + zone.name + "' cannot be read: " + reason_text(why) +
+                         "; zonepack verify " + map.catalog.folder + " says more",
+                     why.code);
+    };
+    const auto pack = PackReader::open(file, &zone.pack_digest);
+    if (!pack) return bad(pack.error());
+    const auto decoded = DecodedPack::decode(*pack, kCoreOnly);
+    if (!decoded) return bad(decoded.error());
+    const ZoneSignatures signatures(decoded->view());
+    for (std::uint32_t i = 0; i < signatures.size(); ++i) {
+      const auto truth = in_plane(signatures[i].T_world_base());
+      const auto mapped = in_plane(signatures[i].T_map_base());
+      if (truth && mapped) error.places_.push_back({*truth, *mapped});
+    }
+  }
+  return error;
+}
+
+std::optional<Pose2> MapError::in_map(const Pose2& truth) const noexcept {
+  const Place* nearest = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Place& place : places_) {
+    const double dx = place.T_world_base.x_m - truth.x_m, dy = place.T_world_base.y_m - truth.y_m;
+    const double d2 = dx * dx + dy * dy;
+    if (d2 < least) {
+      least = d2;
+      nearest = &place;
+    }
+  }
+  if (nearest == nullptr) return std::nullopt;
+  return compose(nearest->T_map_base, between(nearest->T_world_base, truth));
+}
+
+}  // namespace zonepack::localize

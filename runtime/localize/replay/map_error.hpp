@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform/base/failure.hpp"
+#include "runtime/localize/query/map_folder.hpp"
+#include "runtime/odometry/pose.hpp"
+
+namespace zonepack::localize {
+
+// How far a simulated map is off the truth: its signatures know where they really were. A fix can
+// be no better to the truth than the map is; to judge the localizer alone, the truth is moved by
+// the map's own error. Only for figures: reads the whole map, also what is not resident.
+//
+// Memory: 48 bytes a signature.
+class MapError {
+ public:
+  // Reads the signatures' poses. Without a true pose in any of them, empty().
+  static Outcome<MapError> read(const MapFolder& map);
+
+  bool empty() const noexcept { return places_.empty(); }
+
+  // Where the map has what is really at `truth`, by the signature that was really nearest.
+  std::optional<Pose2> in_map(const Pose2& truth) const noexcept;
+
+ private:
+  struct Place {
+    Pose2 T_world_base, T_map_base;
+  };
+  std::vector<Place> places_;
+};
+
+}  // namespace zonepack::localize

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// zoneloc: finds the robot's pose in a camera's images, among the zones in memory. Wiring only.
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "platform/command_line/command_line.hpp"
+#include "platform/signals.hpp"
+#include "platform/version/version.hpp"
+#include "runtime/localize/zoneloc/add_query.hpp"
+#include "runtime/localize/zoneloc/add_replay.hpp"
+#include "runtime/localize/zoneloc/add_run.hpp"
+#include "runtime/protocol/messages.hpp"
+
+// An exception that comes here is a bug: it stops the process.
+// NOLINTNEXTLINE(bugprone-exception-escape)
+int main(int argc, char** argv) {
+  zonepack::outlive_file_limits();
+  CLI::App app(
+      "Finds the robot's pose in a camera's images, among the map's zones in memory.\n"
+      "Exit codes: 0 done, 1 the input or the world is bad, 2 usage.",
+      "zoneloc");
+  app.set_version_flag("--version", zonepack::version_line(
+                                        "zoneloc", {{"protocol", zonepack::kProtocolVersion, {}}}));
+  app.require_subcommand(1);
+  std::function<int()> command;
+  zonepack::localize::RunArguments run;
+  zonepack::localize::add_run(app, run, command);
+  zonepack::localize::QueryArguments query;
+  zonepack::localize::add_query(app, query, command);
+  zonepack::localize::LoopArguments replay;
+  zonepack::localize::add_replay(app, replay, command);
+  try {
+    zonepack::parse_command_line(app, argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return command();
+}

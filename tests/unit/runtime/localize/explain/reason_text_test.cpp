@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/localize/explain/reason_text.hpp"
+
+#include <gtest/gtest.h>
+
+#include "runtime/localize/explain/query_command.hpp"
+
+namespace zonepack::localize {
+namespace {
+
+TEST(ReasonText, NamesTheFiguresThatDecided) {
+  QueryResult result;
+  result.reason = Reason::kFewMatches;
+  result.matches = 12;
+  result.nearest = 412;
+  result.nearest_m = 0.8;
+  result.nearest_turn_rad = 1.6406;  // 94 degrees
+  QueryAsked asked;
+  asked.with_prior = true;
+  asked.nearest_zone = "L1";
+  EXPECT_EQ(
+      reason_text(result, asked),
+      "12 of 15 matches needed; the nearest signature (412 in L1, 0.8 m away) looks 94 degrees "
+      "to the side");
+}
+
+TEST(ReasonText, SaysSomethingForEveryReason) {
+  for (std::size_t i = 0; i < kReasons; ++i) {
+    QueryResult result;
+    result.reason = static_cast<Reason>(i);
+    EXPECT_FALSE(reason_text(result, {}).empty()) << i;
+    EXPECT_STRNE(to_string(result.reason), "?") << i;
+  }
+}
+
+TEST(ParseNear, TakesMetresAndDegrees) {
+  const auto pose = parse_near("1.5,-2,90");
+  ASSERT_TRUE(pose.has_value());
+  EXPECT_EQ(pose->x_m, 1.5);
+  EXPECT_EQ(pose->y_m, -2);
+  EXPECT_NEAR(pose->yaw_rad, 1.5707963, 1e-6);
+  for (const char* text : {"", "1,2", "1,2,", "1,2,3,4", "a,2,3", "nan,1,2", "1e9,0,0"}) {
+    EXPECT_FALSE(parse_near(text).has_value()) << text;
+  }
+}
+
+}  // namespace
+}  // namespace zonepack::localize

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/localize/query/localizer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <random>
+
+#include "tests/support/image_changes.hpp"
+#include "tests/unit/runtime/localize/solve/made_sightings.hpp"
+
+namespace zonepack::localize {
+namespace {
+
+// 400 boxes of any grey at any place: corners everywhere, none like another.
+GreyImage made_view() {
+  GreyImage image;
+  image.width = 640;
+  image.height = 480;
+  image.pixels.assign(640 * 480, 128);
+  std::mt19937 random(5);
+  for (int box = 0; box < 400; ++box) {
+    const auto left = static_cast<int>(random() % 620), top = static_cast<int>(random() % 460);
+    const auto wide = static_cast<int>(10 + random() % 50),
+               high = static_cast<int>(10 + random() % 50);
+    const auto grey = static_cast<std::uint8_t>(random() % 256);
+    for (int y = top; y < std::min(480, top + high); ++y) {
+      for (int x = left; x < std::min(640, left + wide); ++x) {
+        image.pixels[static_cast<std::size_t>(y * 640 + x)] = grey;
+      }
+    }
+  }
+  return image;
+}
+
+// A map of one signature that took the image at kPlace: each feature at a depth of 1 to 5 m.
+class LocalizerTest : public testing::Test {
+ protected:
+  LocalizerTest() : localizer_(made_camera(), DetectorSettings{}) {
+    const CameraModel camera = made_camera();
+    const auto features = localizer_.detect(view_);
+    map_.id = 7;
+    map_.zone = 0;
+    map_.T_map_base = lift(kPlace, 0);
+    map_.T_base_camera = camera.T_base_camera;
+    map_.descriptor_bytes = 32;
+    map_.descriptors = features->descriptors;
+    std::mt19937 random(9);
+    for (const Eigen::Vector2f& px : features->px) {
+      const double depth = 1 + static_cast<double>(random() % 4000) / 1000;
+      const Eigen::Vector3d p =
+          camera.T_base_camera * Eigen::Vector3d((double{px.x()} - camera.cx) / camera.fx * depth,
+                                                 (double{px.y()} - camera.cy) / camera.fy * depth,
+                                                 depth);
+      map_.points.push_back({px.x(), px.y(), static_cast<float>(p.x()), static_cast<float>(p.y()),
+                             static_cast<float>(p.z())});
+    }
+  }
+
+  QueryResult query(const GreyImage& image, const std::optional<QueryPrior>& prior) {
+    const MapFeatures* const all[] = {&map_};
+    return localizer_.query(image, all, prior);
+  }
+
+  static constexpr Pose2 kPlace{3, -2, 0.7};
+  const QueryPrior near_{{3.2, -2.1, 0.75}, {0.09, 0, 0, 0.09, 0, 0.0076}};
+  GreyImage view_ = made_view();
+  Localizer localizer_;
+  MapFeatures map_;
+};
+
+TEST_F(LocalizerTest, FindsWhereTheImageWasTaken) {
+  const QueryResult result = query(view_, near_);
+  ASSERT_TRUE(result.accepted) << to_string(result.reason);
+  EXPECT_NEAR(result.pose.x_m, 3, 0.002);
+  EXPECT_NEAR(result.pose.y_m, -2, 0.002);
+  EXPECT_NEAR(result.pose.yaw_rad, 0.7, 0.001);
+  EXPECT_GT(result.distinct, 100);
+  EXPECT_EQ(result.best, 7);
+}
+
+TEST_F(LocalizerTest, FindsItWithoutAPrior) {
+  const QueryResult result = query(view_, {});
+  ASSERT_TRUE(result.accepted) << to_string(result.reason);
+  EXPECT_NEAR(result.pose.x_m, 3, 0.002);
+}
+
+TEST_F(LocalizerTest, GivesTheSameBitsAgain) {
+  const QueryResult once = query(view_, near_), again = query(view_, near_);
+  EXPECT_EQ(once.pose, again.pose);
+  EXPECT_EQ(once.covariance, again.covariance);
+  EXPECT_EQ(once.inliers, again.inliers);
+}
+
+TEST_F(LocalizerTest, BearsWhatADayDoesToImages) {
+  for (const char* change : {"gain:0.5", "gain:1.5", "gamma:1.5", "noise:5"}) {
+    const QueryResult result = query(*test_support::changed(view_, change), near_);
+    ASSERT_TRUE(result.accepted) << change << ": " << to_string(result.reason);
+    EXPECT_NEAR(result.pose.x_m, 3, 0.02) << change;
+  }
+}
+
+TEST_F(LocalizerTest, AcceptsNothingThatIsNoView) {
+  for (const char* change : {"flip", "fill:0", "fill:255"}) {
+    const QueryResult result = query(*test_support::changed(view_, change), near_);
+    EXPECT_FALSE(result.accepted) << change;
+  }
+  EXPECT_EQ(query(test_support::filled(view_, 0), near_).reason, Reason::kNoFeatures);
+}
+
+TEST_F(LocalizerTest, SaysWhyThereIsNoPose) {
+  GreyImage half = view_;
+  half.height = 240;
+  half.pixels.resize(640 * 240);
+  EXPECT_EQ(query(half, near_).reason, Reason::kWrongSize);
+  QueryPrior away = near_;
+  away.T_map_base.x_m += 50;
+  EXPECT_EQ(query(view_, away).reason, Reason::kNoSignature);
+  QueryPrior turned = near_;
+  turned.T_map_base.yaw_rad += 3.1;
+  const QueryResult result = query(view_, turned);
+  EXPECT_EQ(result.reason, Reason::kNotInView);
+  EXPECT_EQ(result.nearest, 7);
+}
+
+}  // namespace
+}  // namespace zonepack::localize
