@@ -2,12 +2,11 @@
 #include "packer/sources/cells.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "platform/base/number_text.hpp"
 #include "platform/base/utf8.hpp"
 
 namespace zonepack::packer {
@@ -26,12 +25,6 @@ const char* storage_class(int type) {
     default:
       return "NULL";
   }
-}
-
-std::string shortest(double value) {
-  std::array<char, 32> text;
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
 }
 
 }  // namespace
@@ -61,7 +54,7 @@ float float_cell(const SqliteQuery& row, int column, const CellPlace& place) {
   }
   const double value = row.real(column);
   if (std::fabs(value) > std::numeric_limits<float>::max() && !std::isinf(value)) {
-    place.damaged("expected a number that a float32 can hold, found " + shortest(value));
+    place.damaged("expected a number that a float32 can hold, found " + shortest_number(value));
   }
   return static_cast<float>(value);
 }
@@ -77,7 +70,8 @@ double finite_cell(const SqliteQuery& row, int column, const CellPlace& place) {
     place.damaged(std::string("expected a number, found ") + storage_class(type));
   }
   const double value = row.real(column);
-  if (!std::isfinite(value)) place.damaged("expected a finite number, found " + shortest(value));
+  if (!std::isfinite(value))
+    place.damaged("expected a finite number, found " + shortest_number(value));
   return value;
 }
 

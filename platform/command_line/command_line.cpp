@@ -71,4 +71,8 @@ void add_examples(CLI::App& app, std::initializer_list<std::string_view> command
   app.footer(text);
 }
 
+CLI::Option* add_file(CLI::App& app, const char* name, std::string& target, const char* help) {
+  return app.add_option(name, target, help)->type_name("FILE");
+}
+
 }  // namespace zonepack

@@ -5,8 +5,8 @@
 #include <iostream>
 
 #include "platform/atomic_file.hpp"
+#include "platform/base/number_text.hpp"
 #include "platform/can_log.hpp"
-#include "runtime/calibrate/number_text.hpp"
 #include "runtime/calibrate/wheel_hints.hpp"
 #include "runtime/calibrate/wheel_watch.hpp"
 #include "runtime/odometry/det_math.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "runtime/calibrate/number_text.hpp"
+#include "platform/base/number_text.hpp"
 #include "runtime/calibrate/scale_guess.hpp"
 #include "runtime/calibrate/side_faults.hpp"
 #include "runtime/odometry/det_math.hpp"

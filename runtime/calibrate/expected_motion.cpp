@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "runtime/calibrate/number_text.hpp"
+#include "platform/base/number_text.hpp"
 
 namespace zonepack {
 namespace {

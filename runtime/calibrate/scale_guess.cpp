@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/calibrate/number_text.hpp"
+#include "platform/base/number_text.hpp"
 #include "runtime/odometry/det_math.hpp"
 #include "runtime/settings/dbc_file.hpp"
 #include "runtime/settings/field.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "runtime/calibrate/number_text.hpp"
+#include "platform/base/number_text.hpp"
 
 namespace zonepack {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "platform/base/json_text.hpp"
+#include "platform/base/number_text.hpp"
 #include "runtime/calibrate/expectation_hints.hpp"
-#include "runtime/calibrate/number_text.hpp"
 #include "runtime/calibrate/scale_guess.hpp"
 #include "runtime/calibrate/side_faults.hpp"
 #include "runtime/calibrate/side_hints.hpp"

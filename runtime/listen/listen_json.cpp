@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "platform/base/json_text.hpp"
-#include "runtime/calibrate/number_text.hpp"
+#include "platform/base/number_text.hpp"
 #include "runtime/listen/listen_text.hpp"
 
 namespace zonepack {

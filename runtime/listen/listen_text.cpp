@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "platform/base/number_text.hpp"
 #include "platform/base/utf8.hpp"
-#include "runtime/calibrate/number_text.hpp"
 #include "runtime/odometry/det_math.hpp"
 
 namespace zonepack {

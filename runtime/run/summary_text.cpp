@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/run/summary_text.hpp"
 
-#include <array>
-#include <charconv>
 #include <iostream>
 #include <string_view>
 #include <type_traits>
@@ -10,27 +8,14 @@
 #include "platform/atomic_file.hpp"
 #include "platform/base/counted.hpp"
 #include "platform/base/json_text.hpp"
+#include "platform/base/number_text.hpp"
 
 namespace zonepack {
 namespace {
 
-std::string shortest(double value) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
-}
-
-std::string fixed(double value, int decimals) {
-  std::array<char, 64> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
-                                 std::chars_format::fixed, decimals)
-                       .ptr;
-  return {text.data(), end};
-}
-
 // "2.33 MiB (2441160 bytes)".
 std::string bytes_text(ByteCount bytes) {
-  return fixed(static_cast<double>(bytes) / static_cast<double>(kMiB), 2) + " MiB (" +
+  return decimals_text(static_cast<double>(bytes) / static_cast<double>(kMiB), 2) + " MiB (" +
          counted(bytes, "byte") + ")";
 }
 
@@ -43,7 +28,7 @@ class JsonObject {
     if constexpr (std::is_integral_v<T>) {
       text_ += std::to_string(value);
     } else if constexpr (std::is_floating_point_v<T>) {
-      text_ += shortest(value);
+      text_ += shortest_number(value);
     } else {
       text_ += value;
     }
@@ -55,7 +40,7 @@ class JsonObject {
 };
 
 std::string number_json(const std::optional<double>& value) {
-  return value ? shortest(*value) : "null";
+  return value ? shortest_number(*value) : "null";
 }
 
 std::string with_reasons(std::uint64_t rejected, const std::string& why) {
@@ -64,19 +49,21 @@ std::string with_reasons(std::uint64_t rejected, const std::string& why) {
 
 std::string error_json(const std::optional<PoseError>& error) {
   if (!error) return "null";
-  return "{\"p50\": " + shortest(error->p50) + ", \"p95\": " + shortest(error->p95) +
-         ", \"max\": " + shortest(error->max) + "}";
+  return "{\"p50\": " + shortest_number(error->p50) + ", \"p95\": " + shortest_number(error->p95) +
+         ", \"max\": " + shortest_number(error->max) + "}";
 }
 
 std::string timing_json(const LiveFigures::Timing& timing) {
-  return "{\"p50\": " + shortest(timing.p50) + ", \"p99\": " + shortest(timing.p99) +
-         ", \"p999\": " + shortest(timing.p999) + ", \"p9999\": " + shortest(timing.p9999) +
-         ", \"max\": " + shortest(timing.max) + "}";
+  return "{\"p50\": " + shortest_number(timing.p50) + ", \"p99\": " + shortest_number(timing.p99) +
+         ", \"p999\": " + shortest_number(timing.p999) +
+         ", \"p9999\": " + shortest_number(timing.p9999) +
+         ", \"max\": " + shortest_number(timing.max) + "}";
 }
 
 std::string worst_json(const LiveFigures::Worst& worst) {
-  return "{\"cycle\": " + std::to_string(worst.cycle) + ", \"us\": " + shortest(worst.us) +
-         ", \"step\": " + json_quoted(worst.step) + ", \"step_us\": " + shortest(worst.step_us) +
+  return "{\"cycle\": " + std::to_string(worst.cycle) + ", \"us\": " + shortest_number(worst.us) +
+         ", \"step\": " + json_quoted(worst.step) +
+         ", \"step_us\": " + shortest_number(worst.step_us) +
          ", \"frames\": " + std::to_string(worst.frames) +
          ", \"corrections\": " + std::to_string(worst.corrections) +
          ", \"loads\": " + std::to_string(worst.loads) +
@@ -155,14 +142,15 @@ std::string summary_table(const RunSummary& s) {
   row("zones loaded", count(s.zones_loaded) + ", unloaded " + count(s.zones_unloaded));
   row("read from storage", bytes_text(s.bytes_loaded));
   row("zone switches", count(s.zone_switches));
-  row("first zone resident", s.zones_loaded == 0 ? "never" : "after " + fixed(s.start_s, 2) + " s");
-  row("own zone absent", s.localised ? fixed(s.zone_absent_s, 2) + " s" : "always");
-  row("waiting for room", fixed(s.blocked_s, 2) + " s");
-  if (s.wrong_zone_s) row("in a wrong zone", fixed(*s.wrong_zone_s, 2) + " s");
+  row("first zone resident",
+      s.zones_loaded == 0 ? "never" : "after " + decimals_text(s.start_s, 2) + " s");
+  row("own zone absent", s.localised ? decimals_text(s.zone_absent_s, 2) + " s" : "always");
+  row("waiting for room", decimals_text(s.blocked_s, 2) + " s");
+  if (s.wrong_zone_s) row("in a wrong zone", decimals_text(*s.wrong_zone_s, 2) + " s");
   if (s.pose_error_m) {
-    row("pose error", "median " + fixed(s.pose_error_m->p50, 3) + " m, 95 % " +
-                          fixed(s.pose_error_m->p95, 3) + " m, most " +
-                          fixed(s.pose_error_m->max, 3) + " m");
+    row("pose error", "median " + decimals_text(s.pose_error_m->p50, 3) + " m, 95 % " +
+                          decimals_text(s.pose_error_m->p95, 3) + " m, most " +
+                          decimals_text(s.pose_error_m->max, 3) + " m");
   }
   row("CAN frames",
       count(s.can_frames) + ", rejected " + with_reasons(s.can_rejected, s.can_rejected_why));
@@ -171,8 +159,9 @@ std::string summary_table(const RunSummary& s) {
   row("event log", s.event_log_hash);
   if (s.live) {
     const auto timing = [](const LiveFigures::Timing& t) {
-      return "median " + fixed(t.p50, 1) + " us, 99 % " + fixed(t.p99, 1) + " us, 99.99 % " +
-             fixed(t.p9999, 1) + " us, most " + fixed(t.max, 1) + " us";
+      return "median " + decimals_text(t.p50, 1) + " us, 99 % " + decimals_text(t.p99, 1) +
+             " us, 99.99 % " + decimals_text(t.p9999, 1) + " us, most " + decimals_text(t.max, 1) +
+             " us";
     };
     row("process, at most", bytes_text(s.live->process_peak_bytes));
     row("besides the map", bytes_text(s.live->overhead_bytes));

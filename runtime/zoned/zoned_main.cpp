@@ -23,30 +23,12 @@ namespace {
 using zonepack::ReplayArguments;
 using zonepack::RunArguments;
 
+using zonepack::add_file;
+using zonepack::add_parsed;
 using zonepack::RunChoices;
 
 // What the command line asked for; run once all of it was understood.
 using Command = std::function<int()>;
-
-CLI::Option* add_file(CLI::App& app, const char* name, std::string& target, const char* help) {
-  return app.add_option(name, target, help)->type_name("FILE");
-}
-
-// A text option that is turned into a value, or refused with what is expected.
-template <typename Parse>
-CLI::Option* add_parsed(CLI::App& app, const char* name, const char* type, const char* help,
-                        const char* expected, Parse parse) {
-  return app
-      .add_option_function<std::string>(
-          name,
-          [name, expected, parse](const std::string& text) {
-            if (!parse(text)) {
-              throw CLI::ValidationError(name, "'" + text + "' is not " + expected);
-            }
-          },
-          help)
-      ->type_name(type);
-}
 
 void need(const char* option, const std::string& given) {
   if (given.empty()) throw CLI::RequiredError(option);

@@ -4,9 +4,10 @@
 //
 // MISSION holds rgb.txt, calibration.yaml and base_groundtruth.txt. Options: position=0.3 (metres,
 // standard deviation along each axis), yaw=5 (degrees), seed=1, false=N (that many trials with a
-// prior at a signature elsewhere), roll=, pitch= (degrees by which the camera is tilted without
-// being told), z= (metres by which it is lower), change=gain:2.5 and others (image_changes.hpp),
-// every=N (only each N-th image), lost=1 (no prior), list=1 (a line for each image), needed=15.
+// prior at a signature elsewhere), roll=, pitch= (degrees by which the camera is tilted, unknown
+// to the localizer), z= (metres by which it is lower), change=gain:2.5 and others
+// (image_changes.hpp), every=N (only each N-th image), lost=1 (no prior), list=1 (a line for each
+// image), needed=15.
 //
 // Prints the share of right fixes (within 0.5 m and 10 degrees of the truth), wrong ones, errors to
 // the truth and in the map's frame (the truth moved by the nearest signature's own error), and

@@ -14,6 +14,7 @@
 #include "platform/clock.hpp"
 #include "platform/output_place.hpp"
 #include "platform/terminal.hpp"
+#include "platform/write_output.hpp"
 #include "runtime/ctl/commands/answer_json.hpp"
 #include "runtime/ctl/commands/figures.hpp"
 #include "runtime/ctl/commands/localizer_figures.hpp"
@@ -72,17 +73,6 @@ void print_status(const wire::Status& status) {
   for (const std::string& line : localizer_lines(status)) std::cout << line << '\n';
 }
 
-// One document, to a file or standard output.
-Outcome<void> put_json(const std::string& file, const std::string& text) {
-  if (file == "-") {
-    std::cout << text << std::flush;
-    if (!std::cout) return failure("standard output: cannot be written", ErrorCode::kIo);
-    return {};
-  }
-  const auto written = write_file_atomically(file, text);
-  return written ? Outcome<void>() : cannot_write(file, written.error());
-}
-
 }  // namespace
 
 Outcome<std::string> socket_path(const CtlArguments& arguments) {
@@ -107,7 +97,7 @@ Outcome<std::string> socket_path(const CtlArguments& arguments) {
 
 Outcome<void> ctl_status(const std::string& socket, const std::string& json) {
   return with_status(socket, [&json](const wire::Status& status) -> Outcome<void> {
-    if (!json.empty()) return put_json(json, status_json(status));
+    if (!json.empty()) return write_output(json, status_json(status));
     print_status(status);
     return {};
   });
@@ -145,7 +135,7 @@ Outcome<void> ctl_zones(const std::string& socket, const std::string& json) {
     const auto done = each_zone(*session, [&text](const wire::Zone& zone) {
       text += (text.empty() ? "" : ",\n") + zone_json(zone);
     });
-    return done ? put_json(json, "{\"zones\":[\n" + text + "\n]}\n") : done;
+    return done ? write_output(json, "{\"zones\":[\n" + text + "\n]}\n") : done;
   }
   std::printf("%-24s %-10s %-20s %10s %10s %7s\n", "zone", "state", "", "signatures", "size",
               "entered");
@@ -228,7 +218,7 @@ Outcome<void> ctl_route(const std::string& socket, const std::string& from, cons
       route.doors()->size() + 1 != route.names()->size()) {
     return failure("zoned's answer is no route");
   }
-  if (!json.empty()) return put_json(json, route_json(route));
+  if (!json.empty()) return write_output(json, route_json(route));
   for (flatbuffers::uoffset_t i = 0; i < route.names()->size(); ++i) {
     std::printf("%s", route.names()->Get(i)->c_str());
     if (i < route.doors()->size()) {

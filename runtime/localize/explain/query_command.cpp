@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
 #include "platform/base/json_text.hpp"
+#include "platform/write_output.hpp"
 #include "runtime/localize/camera/calibration.hpp"
 #include "runtime/localize/camera/image_file.hpp"
 #include "runtime/localize/explain/query_drawing.hpp"
@@ -136,17 +136,6 @@ report::Report report_of(const QueryArguments& arguments, const Answer& answer,
   return out;
 }
 
-Outcome<void> write_json(const std::string& path, const std::string& text) {
-  if (path == "-") {
-    std::fputs(text.c_str(), stdout);
-    if (std::fflush(stdout) != 0) return failure("standard output: cannot be written");
-    return {};
-  }
-  const auto written = write_file_atomically(path, text);
-  if (!written) return cannot_write(path, written.error());
-  return {};
-}
-
 // The zones that are looked at: one, or all.
 Outcome<std::vector<MapFeatures>> features_of(const MapFolder& map, const std::string& zone) {
   std::vector<MapFeatures> out;
@@ -208,7 +197,7 @@ Outcome<void> query(const QueryArguments& arguments) {
   answer.why = reason_text(answer.result, answer.asked);
   std::fputs(text_of(answer).c_str(), arguments.json == "-" ? stderr : stdout);
   if (!arguments.json.empty()) {
-    if (auto written = write_json(arguments.json, json_of(answer)); !written) return written;
+    if (auto written = write_output(arguments.json, json_of(answer)); !written) return written;
   }
   if (!arguments.draw.empty()) {
     return report::write_report(arguments.draw,

@@ -5,7 +5,6 @@
 
 #include "runtime/client/signature_view.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
-#include "runtime/pack_format/file/pack_reader.hpp"
 
 namespace zonepack::localize {
 
@@ -19,29 +18,30 @@ Outcome<MapFolder> open_map_folder(const std::string& folder) {
                        "; give a folder that zonepack build wrote",
                    catalog.error().code);
   }
-  auto bytes = read_manifest_file(folder, Catalog::kNoMost, ReadMode::kCached);
-  if (!bytes) return failure(folder + ": " + reason_text(bytes.error()), bytes.error().code);
-  const auto manifest = check_manifest(*bytes);
-  if (!manifest) return failure(folder + ": changed while it was read; try again");
-  const flatbuffers::String* const text = (*manifest)->provenance()->detector();
-  auto detector =
-      parse_detector(text == nullptr ? std::string_view() : text->string_view(), folder);
+  auto detector = parse_detector(catalog->detector, folder);
   if (!detector) return std::move(detector).error();
   return MapFolder{std::move(*catalog), *detector};
 }
 
-Outcome<std::vector<MapFeatures>> read_zone_features(const MapFolder& map, ZoneId zone) {
-  const CatalogZone& entry = map.catalog.zones.at(zone);
-  const std::string file = map.catalog.folder + "/" + entry.pack;
+Outcome<DecodedPack> decode_zone(const Catalog& catalog, const CatalogZone& zone,
+                                 PayloadMask wanted) {
+  const std::string file = catalog.folder + "/" + zone.pack;
   const auto bad = [&](const Error& error) {
-    return failure(file + ": zone '" + entry.name + "' cannot be read: " + reason_text(error) +
-                       "; zonepack verify " + map.catalog.folder + " says more",
+    return failure(file + ": zone '" + zone.name + "' cannot be read: " + reason_text(error) +
+                       "; zonepack verify " + catalog.folder + " says more",
                    error.code);
   };
-  const auto pack = PackReader::open(file, &entry.pack_digest);
+  const auto pack = PackReader::open(file, &zone.pack_digest);
   if (!pack) return bad(pack.error());
-  const auto decoded = DecodedPack::decode(*pack, kCoreOnly | mask_of(fb::PayloadKind::Features));
+  auto decoded = DecodedPack::decode(*pack, wanted);
   if (!decoded) return bad(decoded.error());
+  return std::move(decoded).value();
+}
+
+Outcome<std::vector<MapFeatures>> read_zone_features(const MapFolder& map, ZoneId zone) {
+  const auto decoded = decode_zone(map.catalog, map.catalog.zones.at(zone),
+                                   kCoreOnly | mask_of(fb::PayloadKind::Features));
+  if (!decoded) return decoded.error();
   std::vector<MapFeatures> out;
   const ZoneSignatures signatures(decoded->view());
   for (std::uint32_t i = 0; i < signatures.size(); ++i) {

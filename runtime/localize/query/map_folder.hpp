@@ -8,6 +8,7 @@
 #include "runtime/localize/features/detector_settings.hpp"
 #include "runtime/localize/query/map_features.hpp"
 #include "runtime/map/catalog.hpp"
+#include "runtime/pack_format/file/pack_reader.hpp"
 
 namespace zonepack::localize {
 
@@ -17,6 +18,10 @@ struct MapFolder {
   DetectorSettings detector;
 };
 Outcome<MapFolder> open_map_folder(const std::string& folder);
+
+// One zone's pack, read and decoded as far as wanted; errors name the file and the zone.
+Outcome<DecodedPack> decode_zone(const Catalog& catalog, const CatalogZone& zone,
+                                 PayloadMask wanted);
 
 // The features of one zone, read from its pack.
 Outcome<std::vector<MapFeatures>> read_zone_features(const MapFolder& map, ZoneId zone);

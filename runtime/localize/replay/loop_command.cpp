@@ -65,7 +65,7 @@ struct LoopInputs {
 Outcome<void> check_size(const std::vector<ListedImage>& images, const LoopArguments& arguments,
                          const CameraModel& camera) {
   const auto image = read_image(images.front().file);
-  if (!image) return {};  // told when its time comes
+  if (!image) return {};  // refused by name when its time comes
   if (image->width == camera.width && image->height == camera.height) return {};
   const auto size = [](int width, int height) {
     return std::to_string(width) + "x" + std::to_string(height);

@@ -1,33 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <string_view>
 
 #include "platform/base/byte_count.hpp"
 #include "platform/base/json_text.hpp"
+#include "platform/base/number_text.hpp"
 #include "runtime/localize/replay/loop_figures.hpp"
 
 namespace zonepack::localize {
 namespace {
 
-std::string shortest(double value) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
-}
-
-std::string fixed(double value, int decimals) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
-}
-
 // The members of an object without its braces.
 std::string members(const Spread& spread) {
-  return "\"p50\": " + shortest(spread.p50) + ", \"p95\": " + shortest(spread.p95) +
-         ", \"max\": " + shortest(spread.max);
+  return "\"p50\": " + shortest_number(spread.p50) + ", \"p95\": " + shortest_number(spread.p95) +
+         ", \"max\": " + shortest_number(spread.max);
 }
 
 std::string json_of(const std::optional<Spread>& spread) {
@@ -38,7 +25,7 @@ template <typename T>
 std::string json_of(const std::optional<T>& value) {
   if (!value) return "null";
   if constexpr (std::is_floating_point_v<T>) {
-    return shortest(*value);
+    return shortest_number(*value);
   } else {
     return std::to_string(*value);
   }
@@ -72,13 +59,13 @@ std::string reasons_json(const LoopFigures& figures) {
 std::string in_words(const std::optional<Spread>& spread, double scale, int decimals,
                      const char* unit) {
   if (!spread) return "unknown";
-  return "p50 " + fixed(spread->p50 * scale, decimals) + ", p95 " +
-         fixed(spread->p95 * scale, decimals) + ", at most " +
-         fixed(spread->max * scale, decimals) + " " + unit;
+  return "p50 " + decimals_text(spread->p50 * scale, decimals) + ", p95 " +
+         decimals_text(spread->p95 * scale, decimals) + ", at most " +
+         decimals_text(spread->max * scale, decimals) + " " + unit;
 }
 
 std::string percent(std::size_t part, std::size_t whole) {
-  return fixed(100.0 * static_cast<double>(part) / static_cast<double>(whole), 1) + " %";
+  return decimals_text(100.0 * static_cast<double>(part) / static_cast<double>(whole), 1) + " %";
 }
 
 }  // namespace
@@ -93,13 +80,13 @@ std::string figures_json(const LoopFigures& f) {
   add("accepted", std::to_string(f.accepted));
   add("right", json_of(f.right));
   add("wrong", json_of(f.wrong));
-  add("longest_gap_s", shortest(f.longest_gap_s));
+  add("longest_gap_s", shortest_number(f.longest_gap_s));
   add("fix_error_m", json_of(f.fix_error_m));
   add("fix_error_map_m", json_of(f.fix_error_map_m));
   add("pose_error_m", json_of(spread(f.run.pose_error_m)));
   add("yaw_error_deg", json_of(f.yaw_error_deg));
   add("wrong_zone_s", json_of(f.run.wrong_zone_s));
-  add("zone_absent_s", f.run.localised ? shortest(f.run.zone_absent_s) : "null");
+  add("zone_absent_s", f.run.localised ? shortest_number(f.run.zone_absent_s) : "null");
   add("budget_violations", std::to_string(f.run.budget_violations));
   add("query_ms", queries_json(f));
   add("rss_peak_bytes", std::to_string(f.rss_peak_bytes));
@@ -134,22 +121,24 @@ std::string figures_table(const LoopFigures& f) {
     why += (why.empty() ? "" : ", ") + name + " " + std::to_string(count);
   }
   if (!why.empty()) add("no fix", why);
-  add("longest gap", fixed(f.longest_gap_s, 1) + " s");
+  add("longest gap", decimals_text(f.longest_gap_s, 1) + " s");
   add("fix error", in_words(f.fix_error_m, 100, 1, "cm"));
   add("  in the map's frame", in_words(f.fix_error_map_m, 100, 1, "cm"));
   add("pose error", in_words(spread(f.run.pose_error_m), 100, 1, "cm"));
   add("heading error", in_words(f.yaw_error_deg, 1, 2, "degrees"));
-  add("in a wrong zone", f.run.wrong_zone_s ? fixed(*f.run.wrong_zone_s, 2) + " s" : "unknown");
+  add("in a wrong zone",
+      f.run.wrong_zone_s ? decimals_text(*f.run.wrong_zone_s, 2) + " s" : "unknown");
   add("own zone absent",
-      f.run.localised ? fixed(f.run.zone_absent_s, 2) + " s" : "always: never localised");
+      f.run.localised ? decimals_text(f.run.zone_absent_s, 2) + " s" : "always: never localised");
   add("budget", format_byte_count(f.run.budget_bytes) + ", at most charged " +
                     format_byte_count(f.run.peak_charged_bytes) + ", over a limit in " +
                     std::to_string(f.run.budget_violations) + " cycles");
   add("query", in_words(f.query_ms, 1, 1, "ms of CPU"));
   add("peak memory", format_byte_count(f.rss_peak_bytes));
-  add("pose trusted after", f.found_after_s ? std::to_string(f.found_after_views.value_or(0)) +
-                                                  " images, " + fixed(*f.found_after_s, 1) + " s"
-                                            : "never");
+  add("pose trusted after", f.found_after_s
+                                ? std::to_string(f.found_after_views.value_or(0)) + " images, " +
+                                      decimals_text(*f.found_after_s, 1) + " s"
+                                : "never");
   add("event_log_hash", f.run.event_log_hash);
   return text;
 }

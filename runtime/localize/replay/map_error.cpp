@@ -6,7 +6,6 @@
 
 #include "runtime/client/signature_view.hpp"
 #include "runtime/odometry/se2.hpp"
-#include "runtime/pack_format/file/pack_reader.hpp"
 
 namespace zonepack::localize {
 namespace {
@@ -23,16 +22,8 @@ std::optional<Pose2> in_plane(const std::optional<RigidTransform>& m) {
 Outcome<MapError> MapError::read(const MapFolder& map) {
   MapError error;
   for (const CatalogZone& zone : map.catalog.zones) {
-    const std::string file = map.catalog.folder + "/" + zone.pack;
-    const auto bad = [&](const Error& why) {
-      return failure(file + ": zone '" + zone.name + "' cannot be read: " + reason_text(why) +
-                         "; zonepack verify " + map.catalog.folder + " says more",
-                     why.code);
-    };
-    const auto pack = PackReader::open(file, &zone.pack_digest);
-    if (!pack) return bad(pack.error());
-    const auto decoded = DecodedPack::decode(*pack, kCoreOnly);
-    if (!decoded) return bad(decoded.error());
+    const auto decoded = decode_zone(map.catalog, zone, kCoreOnly);
+    if (!decoded) return decoded.error();
     const ZoneSignatures signatures(decoded->view());
     for (std::uint32_t i = 0; i < signatures.size(); ++i) {
       const auto truth = in_plane(signatures[i].T_world_base());

@@ -8,10 +8,10 @@
 #include <optional>
 #include <utility>
 
-#include "platform/atomic_file.hpp"
 #include "platform/clock.hpp"
 #include "platform/realtime.hpp"
 #include "platform/signals.hpp"
+#include "platform/write_output.hpp"
 #include "runtime/localize/camera/calibration.hpp"
 #include "runtime/localize/query/localizer.hpp"
 #include "runtime/localize/run/complaints.hpp"
@@ -263,17 +263,6 @@ Outcome<void> Run::go() {
   return {};
 }
 
-Outcome<void> write_summary(const std::string& file, const std::string& text) {
-  if (file.empty()) return {};
-  if (file == "-") {
-    std::cout << text << std::flush;
-    if (!std::cout) return failure("standard output: cannot be written", ErrorCode::kIo);
-    return {};
-  }
-  const auto written = write_file_atomically(file, text);
-  return written ? Outcome<void>() : cannot_write(file, written.error());
-}
-
 }  // namespace
 
 int run_localizer(const RunArguments& arguments) {
@@ -288,7 +277,9 @@ int run_localizer(const RunArguments& arguments) {
   Failures all;
   all.add(run.go());
   say(run.counters().text());
-  all.add(write_summary(arguments.json, run.counters().json(process_peak_bytes())));
+  if (!arguments.json.empty()) {
+    all.add(write_output(arguments.json, run.counters().json(process_peak_bytes())));
+  }
   if (const auto done = all.all(); !done) return report_failure(kZoneloc, done.error());
   return 0;
 }

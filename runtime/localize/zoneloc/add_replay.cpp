@@ -29,60 +29,47 @@ void add_replay(CLI::App& app, LoopArguments& arguments, std::function<int()>& c
       "replay",
       "drives a recorded run in simulated time with fixes from its images, found among the zones "
       "that are resident");
-  const auto file = [&replay](const char* name, std::string& target, const char* help) {
-    return replay.add_option(name, target, help)->type_name("FILE");
-  };
-  const auto parsed = [&replay](const char* name, const char* type, const char* help,
-                                const char* expected, auto parse) {
-    replay
-        .add_option_function<std::string>(
-            name,
-            [name, expected, parse](const std::string& text) {
-              if (!parse(text)) {
-                throw CLI::ValidationError(name, "'" + text + "' is not " + expected);
-              }
-            },
-            help)
-        ->type_name(type);
-  };
-  file("--config", arguments.config, "settings of the robot (YAML)")->required();
+  add_file(replay, "--config", arguments.config, "settings of the robot (YAML)")->required();
   replay.add_option("--map", arguments.map, "map folder; else map.path of the settings")
       ->type_name("DIR");
   replay.add_option("--can", arguments.can, "CAN log, as candump -l or -L writes it")
       ->type_name("LOG")
       ->required();
-  file("--images", arguments.images, "list of images: stamp file, as TUM's rgb.txt")->required();
-  file("--calibration", arguments.calibration, "the camera's calibration (YAML)")->required();
-  file("--truth", arguments.truth, "true poses, for the figures: t x y z qx qy qz qw");
-  parsed("--budget", "SIZE",
-         "hard limit of all that grows with the map (default: settings, else the smallest)",
-         "a SIZE: bytes, or with a unit: 8MiB, 6.8MiB, 8M, 50MB",
-         [&arguments](const std::string& text) {
-           arguments.budget = parse_byte_count(text);
-           return arguments.budget.has_value();
-         });
+  add_file(replay, "--images", arguments.images, "list of images: stamp file, as TUM's rgb.txt")
+      ->required();
+  add_file(replay, "--calibration", arguments.calibration, "the camera's calibration (YAML)")
+      ->required();
+  add_file(replay, "--truth", arguments.truth, "true poses, for the figures: t x y z qx qy qz qw");
+  add_parsed(replay, "--budget", "SIZE",
+             "hard limit of all that grows with the map (default: settings, else the smallest)",
+             "a SIZE: bytes, or with a unit: 8MiB, 6.8MiB, 8M, 50MB",
+             [&arguments](const std::string& text) {
+               arguments.budget = parse_byte_count(text);
+               return arguments.budget.has_value();
+             });
   replay
       .add_option("--max-signatures", arguments.max_signatures,
                   "most signatures in memory at once; 0: no limit")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1'000'000'000}))
       ->type_name("N");
-  parsed("--start", "X,Y,YAW_DEG|truth|lost", "where the robot starts (default: lost)",
-         "X,Y,YAW_DEG, truth or lost",
-         [&arguments](const std::string& text) { return take_start(text, arguments); });
+  add_parsed(replay, "--start", "X,Y,YAW_DEG|truth|lost", "where the robot starts (default: lost)",
+             "X,Y,YAW_DEG, truth or lost",
+             [&arguments](const std::string& text) { return take_start(text, arguments); });
   replay
       .add_option("--latency", arguments.latency_s,
                   "seconds from an image's stamp to its fix (default: 0.15)")
       ->check(CLI::Range(0.0, 60.0))
       ->type_name("SECONDS");
-  file("--fixes", arguments.fixes, "write the fixes, as zoned replay --corrections reads them");
-  file("--events", arguments.events,
-       "write the event log, one JSON object a line ('-': standard output)");
-  file("--json", arguments.json, "write the figures as JSON ('-': standard output)");
-  file("--report", arguments.report, "draw the run with its fixes: .html, .svg or .png")
+  add_file(replay, "--fixes", arguments.fixes,
+           "write the fixes, as zoned replay --corrections reads them");
+  add_file(replay, "--events", arguments.events,
+           "write the event log, one JSON object a line ('-': standard output)");
+  add_file(replay, "--json", arguments.json, "write the figures as JSON ('-': standard output)");
+  add_file(replay, "--report", arguments.report, "draw the run with its fixes: .html, .svg or .png")
       ->check(
           [](const std::string& path) { return report::check_report_name(path).error().message; });
-  file("--baseline", arguments.baseline,
-       "RTAB-Map's own run of the same images (CSV), to draw beside ours");
+  add_file(replay, "--baseline", arguments.baseline,
+           "RTAB-Map's own run of the same images (CSV), to draw next to ours");
   add_examples(replay,
                {"zoneloc replay --config robot.yaml --map map --can drive.log --images rgb.txt \\\n"
                 "  --calibration camera.yaml --start 0.9,11,-149 --fixes fixes.txt",

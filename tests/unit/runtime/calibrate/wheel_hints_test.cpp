@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "platform/base/number_text.hpp"
 #include "platform/can_log.hpp"
-#include "runtime/calibrate/number_text.hpp"
 #include "runtime/calibrate/wheel_watch.hpp"
 #include "runtime/run/run_files.hpp"
 

@@ -8,10 +8,9 @@
 #include <random>
 
 #include "packer/decode/record_decoder.hpp"
-#include "packer/encode/pack_writer.hpp"
-#include "packer/sources/rtabmap_database.hpp"
 #include "platform/shared_memory.hpp"
 #include "runtime/pack_format/file/pack_reader.hpp"
+#include "tests/support/decoded_database.hpp"
 #include "tests/support/rtabmap_fixture.hpp"
 #include "tests/support/shared_zones.hpp"
 #include "tests/support/signature_recipe.hpp"
@@ -23,28 +22,16 @@ namespace {
 
 using test_support::SharedZones;
 
-// All signatures of a database in one pack, decoded.
-DecodedPack packed(const std::filesystem::path& database_path) {
-  packer::RtabmapDatabase database(database_path);
-  const test_support::TemporaryFolder folder;
-  packer::PackWriter writer(folder.path(), "all");
-  for (const packer::NodeOutline& node : database.outline().nodes) {
-    packer::SignatureRecord record = database.read(node.id, packer::PayloadSet());
-    writer.add(record, 0, 0);
-  }
-  const auto reader = PackReader::open(folder / writer.finish(kEveryPayload).file);
-  return DecodedPack::decode(*reader, kEveryPayload).value();
-}
-
 DecodedPack one_of_everything() {
   const test_support::TemporaryFolder folder;
   test_support::write_rtabmap_database(folder / "map.db",
                                        test_support::one_of_everything("0.23.8"));
-  return packed(folder / "map.db");
+  return test_support::decoded_database(folder / "map.db");
 }
 
 const DecodedPack& sample_map() {
-  static const DecodedPack decoded = packed(std::string(ZONEPACK_TEST_DATA) + "/hospital-small.db");
+  static const DecodedPack decoded =
+      test_support::decoded_database(std::string(ZONEPACK_TEST_DATA) + "/hospital-small.db");
   return decoded;
 }
 

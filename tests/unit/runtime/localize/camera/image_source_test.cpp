@@ -171,7 +171,7 @@ class SocketImages : public testing::Test {
   ImageSource::News next(std::int64_t wait_ns = 20'000'000) {
     return source_->next(monotonic_ns() + wait_ns, image_);
   }
-  // What the writer is told before it is disconnected.
+  // What the writer reads before it is disconnected.
   std::string last_words() {
     Bytes buffer(1000);
     writer_.wait(false, 1000);

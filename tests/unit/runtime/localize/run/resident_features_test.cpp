@@ -5,28 +5,16 @@
 
 #include <map>
 
-#include "packer/encode/pack_writer.hpp"
-#include "packer/sources/rtabmap_database.hpp"
 #include "runtime/localize/query/localizer.hpp"
-#include "runtime/pack_format/file/pack_reader.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/decoded_database.hpp"
 
 namespace zonepack::localize {
 namespace {
 
 // The sample map's signatures in one pack, decoded.
 const DecodedPack& sample() {
-  static const DecodedPack decoded = [] {
-    packer::RtabmapDatabase database(std::string(ZONEPACK_TEST_DATA) + "/hospital-small.db");
-    const test_support::TemporaryFolder folder;
-    packer::PackWriter writer(folder.path(), "all");
-    for (const packer::NodeOutline& node : database.outline().nodes) {
-      packer::SignatureRecord record = database.read(node.id, packer::PayloadSet());
-      writer.add(record, 0, 0);
-    }
-    const auto reader = PackReader::open(folder / writer.finish(kEveryPayload).file);
-    return DecodedPack::decode(*reader, kEveryPayload).value();
-  }();
+  static const DecodedPack decoded =
+      test_support::decoded_database(std::string(ZONEPACK_TEST_DATA) + "/hospital-small.db");
   return decoded;
 }
 

@@ -7,6 +7,13 @@
 
 namespace zonepack {
 
+// The fewest digits that read back to the same value: "0.1", "30", "1e+300".
+inline std::string shortest_number(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
 // `decimals` digits after the point, whatever the locale.
 inline std::string decimals_text(double value, int decimals) {
   std::array<char, 400> text{};

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "platform/clock.hpp"
+#include "runtime/localize/features/feature_detector.hpp"
+#include "runtime/localize/query/candidates.hpp"
+#include "runtime/localize/query/localizer.hpp"
+#include "runtime/localize/query/matching.hpp"
+
+// What the parts of a query share. Near a known pose: localizer.cpp; without one:
+// locate_anywhere.cpp.
+namespace zonepack::localize {
+
+// Adds the processor time of this thread to the stages of a result.
+class StageClock {
+ public:
+  explicit StageClock(QueryResult& result) : result_(result), last_(thread_cpu_ns()) {}
+  void end(Stage stage) {
+    const std::int64_t now = thread_cpu_ns();
+    result_.cpu_ns[static_cast<std::size_t>(stage)] += now - last_;
+    result_.cpu_total_ns += now - last_;
+    last_ = now;
+  }
+
+ private:
+  QueryResult& result_;
+  std::int64_t last_;
+};
+
+struct Localizer::State {
+  CameraModel camera;
+  FeatureDetector detector;
+  QueryOptions options;
+  double scale;  // of distances in pixels
+
+  void locate_near(const ImageFeatures& image, std::span<const MapFeatures* const> map,
+                   const QueryPrior& prior, QueryResult& result) const;
+  void locate_anywhere(const ImageFeatures& image, std::span<const MapFeatures* const> map,
+                       QueryResult& result) const;
+  void polish(const ImageFeatures& image, const Candidates& candidates,
+              const Eigen::Isometry3d& start, QueryResult& result) const;
+  void count(const ImageFeatures& image, const Candidates& candidates,
+             std::vector<Sighting>& sightings, const Eigen::Isometry3d& T_map_base,
+             QueryResult& result) const;
+  void judge(const Candidates& candidates, const QueryPrior& prior, QueryResult& result) const;
+  MatchOptions matching() const {
+    MatchOptions out;
+    out.binary = detector.settings().binary();
+    out.margin_px *= scale;
+    return out;
+  }
+};
+
+}  // namespace zonepack::localize
