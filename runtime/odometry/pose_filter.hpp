@@ -21,6 +21,9 @@ struct PoseCorrection {
   double sigma_x_m = 0;
   double sigma_y_m = 0;
   double sigma_yaw_rad = 0;
+  // How far ahead a localizer sees that reads the map in memory: zones in its view are then kept
+  // too where they fit. 0: it reads none. The filter does not use it.
+  double view_m = 0;
 };
 
 // What became of a fix.
