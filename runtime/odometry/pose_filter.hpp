@@ -10,6 +10,7 @@
 #include "runtime/odometry/pose.hpp"
 #include "runtime/odometry/se2.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
+#include "runtime/odometry/wheel_trim.hpp"
 
 namespace zonepack {
 
@@ -90,7 +91,7 @@ class PoseFilter {
   void start_at(std::int64_t t_ns, const Pose2& T_map_base, double sigma_m,
                 double sigma_rad) noexcept;
 
-  void predict(const OdometryIncrement& increment) noexcept;
+  void predict(const OdometryIncrement& reported) noexcept;
 
   // Once per cycle while odometry is stale: uncertainty grows with the time since the newest
   // increment.
@@ -111,6 +112,9 @@ class PoseFilter {
   std::span<const PoseHypothesis> hypotheses() const noexcept;
 
   const PoseFilterCounters& counters() const noexcept { return counters_; }
+
+  // What fixes of a localizer that sees ahead (view_m) taught about the wheels.
+  const WheelTrim& wheel_trim() const noexcept { return trim_; }
 
  private:
   bool is_plausible(const PoseCorrection& fix) const noexcept;
@@ -147,6 +151,7 @@ class PoseFilter {
   double lost_speed_m_s_ = 0;  // when odometry was last fresh
   double lost_yaw_rate_rad_s_ = 0;
   PoseFilterCounters counters_;
+  WheelTrim trim_;
 };
 
 }  // namespace zonepack

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "runtime/localize/query/fix_slack.hpp"
 #include "runtime/odometry/se2.hpp"
 
 namespace zonepack::localize {
@@ -54,11 +55,7 @@ void CameraLoop::look(const LoopImage& image, const FixMoment& moment,
   LoopView& view = views_.emplace_back();
   view.image = image;
   if (!moment.state.pose.valid) return;
-  QueryPrior prior = prior_at(image.stamp_ns, moment.state.pose);
-  const double im = getenv("IM") ? atof(getenv("IM")) : 0, ir = getenv("IR") ? atof(getenv("IR")) / 57.3 : 0;
-  prior.covariance.xx += im * im;
-  prior.covariance.yy += im * im;
-  prior.covariance.yaw_yaw += ir * ir;
+  const QueryPrior prior = with_map_slack(prior_at(image.stamp_ns, moment.state.pose));
   const auto map = features_.in_reach_of(prior, moment.resident);
   view.offered = static_cast<int>(map.size());
   auto result = find_(image, map, prior);
@@ -76,7 +73,7 @@ void CameraLoop::look(const LoopImage& image, const FixMoment& moment,
   view.fix.sigma_x_m = std::sqrt(view.result.covariance.xx);
   view.fix.sigma_y_m = std::sqrt(view.result.covariance.yy);
   view.fix.sigma_yaw_rad = std::sqrt(view.result.covariance.yaw_yaw);
-  view.fix.view_m = getenv("VIEW") ? atof(getenv("VIEW")) : 8;
+  view.fix.view_m = kView_m;
   fixes.push_back(view.fix);
 }
 
