@@ -36,11 +36,6 @@ double sigmas(const CalibrationFinding& finding) {
   return finding.sigma > 0 ? std::abs(finding.value) / finding.sigma : 0;
 }
 
-bool counts(const CalibrationFinding& finding) {
-  return sigmas(finding) >= CalibrationWatch::kSignificant &&
-         std::abs(finding.value) >= kLeastOfNote[place(finding.trait)];
-}
-
 }  // namespace
 
 const char* to_string(CameraTrait trait) noexcept {
@@ -55,6 +50,11 @@ const char* to_string(CameraTrait trait) noexcept {
       return "roll";
   }
   return "unknown";
+}
+
+bool is_clear(const CalibrationFinding& finding) noexcept {
+  return sigmas(finding) >= CalibrationWatch::kSignificant &&
+         std::abs(finding.value) >= kLeastOfNote[place(finding.trait)];
 }
 
 CameraModel corrected(const CameraModel& camera, const CameraTraits& by) {
@@ -220,14 +220,14 @@ CalibrationReport CalibrationWatch::report() const {
       Subset more = subset;
       more.push_back(trait);
       auto tried = estimate(more);
-      if (!tried || !counts(tried->values.back())) continue;
+      if (!tried || !is_clear(tried->values.back())) continue;
       if (!best || tried->explained > best->explained) best = std::move(tried);
     }
     if (!best) break;
     // One that was taken earlier may be explained by the new one.
     subset.clear();
     for (const CalibrationFinding& value : best->values) {
-      if (counts(value)) subset.push_back(value.trait);
+      if (is_clear(value)) subset.push_back(value.trait);
     }
     const bool dropped = subset.size() < best->values.size();
     found = std::move(best->values);

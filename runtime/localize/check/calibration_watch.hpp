@@ -43,6 +43,9 @@ struct CalibrationReport {
   std::array<CalibrationFinding, kCameraTraits> each{};
 };
 
+// Significant, and more than a map may be off by.
+bool is_clear(const CalibrationFinding& finding) noexcept;
+
 // Looks over many fixes for what a wrong calibration leaves in all of them.
 //
 // Each fix gives the normal equations of the four traits, from the residuals of its inliers and

@@ -66,6 +66,8 @@ void CameraLoop::look(const LoopImage& image, const FixMoment& moment,
   }
   view.kind = LoopView::Kind::kQueried;
   view.result = std::move(*result);
+  if (view.result.accepted && tell_fix_) tell_fix_(view.result);
+  view.result.drawn = {};
   if (!view.result.accepted) return;
   view.fix.stamp_ns = image.stamp_ns;
   view.fix.received_ns = std::max(image.stamp_ns + options_.latency_ns, moment.now_ns + 1);
