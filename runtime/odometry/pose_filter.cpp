@@ -242,8 +242,12 @@ PoseFilter::Placed PoseFilter::find_place(const PoseCorrection& fix, std::int64_
 }
 
 CorrectionVerdict PoseFilter::correct(const PoseCorrection& fix, std::int64_t now_ns) noexcept {
-  const Placed found = find_place(fix, now_ns);
+  Placed found = find_place(fix, now_ns);
   if (!is_used(found.refused)) return count(found.refused);
+  if (fix.view_m > 0 && trusted_) {
+    consistency_.add(mahalanobis2(history_.at(found.index).state, found.pose));
+    found.pose = consistency_.widened(found.pose);
+  }
   const Verdict verdict =
       trusted_ ? place(found.pose, found.index) : support(found.pose, found.index);
   if (fix.view_m > 0 && trusted_ && is_used(verdict)) {

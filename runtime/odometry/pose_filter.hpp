@@ -6,6 +6,7 @@
 #include <span>
 
 #include "runtime/odometry/fix_candidates.hpp"
+#include "runtime/odometry/fix_consistency.hpp"
 #include "runtime/odometry/odometry_history.hpp"
 #include "runtime/odometry/pose.hpp"
 #include "runtime/odometry/se2.hpp"
@@ -115,6 +116,7 @@ class PoseFilter {
 
   // What fixes of a localizer that sees ahead (view_m) taught about the wheels.
   const WheelTrim& wheel_trim() const noexcept { return trim_; }
+  const FixConsistency& fix_consistency() const noexcept { return consistency_; }
 
  private:
   bool is_plausible(const PoseCorrection& fix) const noexcept;
@@ -152,6 +154,7 @@ class PoseFilter {
   double lost_yaw_rate_rad_s_ = 0;
   PoseFilterCounters counters_;
   WheelTrim trim_;
+  FixConsistency consistency_;
 };
 
 }  // namespace zonepack

@@ -17,7 +17,6 @@ constexpr double kUsualFocal_px = 385;
 constexpr double kLoss_px = 2;  // scale of Geman and McClure's loss, at the usual focal length
 // How a robot stands over the floor that the map's signatures were seen from.
 constexpr double kFloorSigma_m = 0.01, kTiltSigma_rad = 0.3 * kDegree;
-// Smaller ones do no harm, and a map is off by as much itself.
 constexpr CameraTraits kLeastOfNote = {0.006, 0.012, 0.2 * kDegree, 0.2 * kDegree};
 
 constexpr std::array<CameraTrait, kCameraTraits> kAll = {CameraTrait::kFocal, CameraTrait::kHeight,
@@ -52,9 +51,11 @@ const char* to_string(CameraTrait trait) noexcept {
   return "unknown";
 }
 
+double least_of_note(CameraTrait trait) noexcept { return kLeastOfNote[place(trait)]; }
+
 bool is_clear(const CalibrationFinding& finding) noexcept {
   return sigmas(finding) >= CalibrationWatch::kSignificant &&
-         std::abs(finding.value) >= kLeastOfNote[place(finding.trait)];
+         std::abs(finding.value) >= least_of_note(finding.trait);
 }
 
 CameraModel corrected(const CameraModel& camera, const CameraTraits& by) {
@@ -199,6 +200,13 @@ std::optional<CalibrationWatch::Estimate> CalibrationWatch::estimate(const Subse
                           std::sqrt(std::max(0.0, covariance(i, i)))});
   }
   return out;
+}
+
+std::vector<CalibrationFinding> CalibrationWatch::together(
+    const std::vector<CameraTrait>& traits) const {
+  if (groups_.size() <= traits.size()) return {};
+  auto estimated = estimate(traits);
+  return estimated ? std::move(estimated->values) : std::vector<CalibrationFinding>{};
 }
 
 CalibrationReport CalibrationWatch::report() const {

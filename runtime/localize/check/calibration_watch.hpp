@@ -43,8 +43,10 @@ struct CalibrationReport {
   std::array<CalibrationFinding, kCameraTraits> each{};
 };
 
-// Significant, and more than a map may be off by.
+// Significant, and more than least_of_note().
 bool is_clear(const CalibrationFinding& finding) noexcept;
+// 0.6 %, 1.2 cm, 0.2 degrees: less does no harm, and maps are off by as much themselves.
+double least_of_note(CameraTrait trait) noexcept;
 
 // Looks over many fixes for what a wrong calibration leaves in all of them.
 //
@@ -60,7 +62,7 @@ bool is_clear(const CalibrationFinding& finding) noexcept;
 // Threads: one.
 class CalibrationWatch {
  public:
-  static constexpr double kSignificant = 5;  // standard deviations: 1 in 1.7 million by chance
+  static constexpr double kSignificant = 3.5;  // standard deviations: 1 in 2000 by chance
   static constexpr std::size_t kMostGroups = 32, kLeastGroups = 10, kFixesOfGroup = 4;
 
   // Takes a query with QueryOptions::keep_matches; ignores one that was not accepted.
@@ -68,6 +70,9 @@ class CalibrationWatch {
 
   std::size_t fixes() const noexcept { return fixes_; }
   CalibrationReport report() const;
+
+  // These traits estimated together, in their order, significant or not. Empty without fixes.
+  std::vector<CalibrationFinding> together(const std::vector<CameraTrait>& traits) const;
 
  private:
   using Matrix = Eigen::Matrix<double, kCameraTraits, kCameraTraits>;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <optional>
 #include <utility>
 
 #include "platform/atomic_file.hpp"
@@ -17,7 +16,7 @@ namespace zonepack::localize {
 namespace {
 
 constexpr const char* kProgram = "zoneloc check";
-constexpr int kMostRuns = 5;
+constexpr int kMostRuns = 8;
 
 struct Checked {
   CameraModel camera;  // put right
@@ -27,41 +26,51 @@ struct Checked {
   int runs = 0;
 };
 
+Failure too_few(const LoopArguments& arguments, const Checked& checked) {
+  const std::size_t needed = CalibrationWatch::kLeastGroups * CalibrationWatch::kFixesOfGroup;
+  return failure(arguments.images + ": " + std::to_string(checked.first.fixes) + " fixes in " +
+                 std::to_string(checked.images) + " images are too few to judge " +
+                 arguments.calibration + "; about " + std::to_string(needed) +
+                 " are needed. Give a longer drive; or, if the calibration is far off, see what "
+                 "is matched with zoneloc query --draw");
+}
+
 Outcome<Checked> check(const LoopArguments& arguments) {
   const auto camera = read_calibration(arguments.calibration);
   if (!camera) return camera.error();
   Checked out;
-  CameraTraits total{};
-  std::array<std::optional<double>, kCameraTraits> sigmas;
-  while (out.runs < kMostRuns) {
+  CameraTraits total{}, sigmas{};
+  std::vector<CameraTrait> wrong;
+  bool settled = false;
+  while (!settled && out.runs < kMostRuns) {
     const auto lessons = drive_for_lessons(arguments, kProgram, total);
     if (!lessons) return lessons.error();
     const CalibrationReport report = lessons->watch.report();
     if (out.runs++ == 0) {
       out.first = report;
       out.images = lessons->images;
-      if (!report.enough) {
-        const std::size_t needed = CalibrationWatch::kLeastGroups * CalibrationWatch::kFixesOfGroup;
-        return failure(
-            arguments.images + ": " + std::to_string(report.fixes) + " fixes in " +
-            std::to_string(out.images) + " images are too few to judge " + arguments.calibration +
-            "; about " + std::to_string(needed) +
-            " are needed. Give a longer drive; or, if the calibration is far off, see what is "
-            "matched with zoneloc query --draw");
-      }
+      if (!report.enough) return too_few(arguments, out);
     }
-    if (report.findings.empty() || !report.enough) break;
     for (const CalibrationFinding& finding : report.findings) {
+      if (std::ranges::find(wrong, finding.trait) == wrong.end()) wrong.push_back(finding.trait);
+    }
+    // What is known to be wrong is followed until it no longer changes.
+    settled = true;
+    for (const CalibrationFinding& finding : lessons->watch.together(wrong)) {
       const auto place = static_cast<std::size_t>(finding.trait);
       total[place] += finding.value;
       sigmas[place] = finding.sigma;
+      const double little = std::max(finding.sigma, least_of_note(finding.trait) / 8);
+      settled = settled && std::abs(finding.value) < little;
     }
   }
-  for (std::size_t i = 0; i < kCameraTraits; ++i) {
-    if (sigmas[i] && is_clear({static_cast<CameraTrait>(i), total[i], *sigmas[i]})) {
-      out.findings.push_back({static_cast<CameraTrait>(i), total[i], *sigmas[i]});
+  for (const CameraTrait trait : wrong) {
+    const auto place = static_cast<std::size_t>(trait);
+    const CalibrationFinding finding{trait, total[place], sigmas[place]};
+    if (is_clear(finding)) {
+      out.findings.push_back(finding);
     } else {
-      total[i] = 0;
+      total[place] = 0;
     }
   }
   out.camera = corrected(*camera, total);
