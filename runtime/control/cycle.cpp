@@ -6,9 +6,14 @@
 #include "platform/base/require.hpp"
 #include "platform/can_errors.hpp"
 #include "runtime/odometry/se2.hpp"
+#include "runtime/zones/zones_in_view.hpp"
 
 namespace zonepack {
 namespace {
+
+// After a fix of a localizer that sees ahead: longer than it usually goes without one.
+constexpr std::int64_t kViewHolds_ns = 30'000'000'000;
+constexpr double kMostView_m = 20;
 
 // To the nearest thousandth, by arithmetic that gives the same on every machine.
 std::int32_t thousandths(double value) noexcept {
@@ -81,7 +86,7 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
   }
   follow_zones(zone_before);
   const Wanted wanted = list_wanted();
-  zone_keeper_.keep(now_ns, {wanted.zones.data(), wanted.count}, wanted.urgent);
+  zone_keeper_.keep(now_ns, {wanted.zones.data(), wanted.count}, wanted.urgent, wanted.needed);
 
   state_.zone_resident = state_.zone != kNoZone && memory_.resident(state_.zone);
   state_.map_ready = state_.pose.trusted && state_.zone_resident;
@@ -92,6 +97,10 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
 void Cycle::take(const PoseCorrection& fix, std::int64_t now_ns) noexcept {
   const CorrectionVerdict verdict = filter_.correct(fix, now_ns);
   state_.pose = filter_.estimate(now_ns);
+  if (is_used(verdict) && fix.view_m > 0) {
+    view_m_ = std::min(fix.view_m, kMostView_m);
+    view_until_ns_ = now_ns + kViewHolds_ns;
+  }
   switch (verdict) {
     case CorrectionVerdict::kUsed:
       return;
@@ -249,7 +258,16 @@ Cycle::Wanted Cycle::list_wanted() const noexcept {
   wanted.urgent = wanted.count;
   for (const Approach& approach : preload_.approaches()) wanted.add(approach.zone);
   want_route(wanted);
+  wanted.needed = wanted.count;
+  want_view(wanted);
   return wanted;
+}
+
+// What a localizer can use besides the zones for the robot's own way.
+void Cycle::want_view(Wanted& wanted) const noexcept {
+  if (view_m_ <= 0 || !state_.pose.valid || state_.pose.t_ns > view_until_ns_) return;
+  const ZonesInView view(graph_, state_.pose.T_map_base, tracker_.pose_zone(), view_m_);
+  for (const ZoneId zone : view.zones()) wanted.add(zone);
 }
 
 // The next two zones of a hinted route, while the robot is on it.
@@ -270,6 +288,8 @@ void Cycle::go_on_from(const Cycle& other) noexcept {
   state_.map_ready = false;
   state_.blocked = false;
   start_ns_ = other.start_ns_;
+  view_m_ = other.view_m_;
+  view_until_ns_ = other.view_until_ns_;
   freeze(other.frozen_, other.held_);
   events_.begin_cycle(state_.cycles - 1, other.events_.t_ns());
 }

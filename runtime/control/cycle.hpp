@@ -144,10 +144,12 @@ class Cycle {
     std::array<ZoneId, ZoneKeeper::kMaxWanted> zones{};
     std::size_t count = 0;
     std::size_t urgent = 0;
+    std::size_t needed = 0;
     void add(ZoneId zone) noexcept;
   };
   Wanted list_wanted() const noexcept;
   void want_route(Wanted& wanted) const noexcept;
+  void want_view(Wanted& wanted) const noexcept;
   void emit(EventKind kind, ZoneId zone = kNoZone, const char* reason = nullptr) noexcept;
 
   const ZoneGraph& graph_;
@@ -168,6 +170,8 @@ class Cycle {
   std::array<CommandReply, kMostCommands> replies_{};
   std::size_t reply_count_ = 0;
   std::int64_t start_ns_ = 0;
+  double view_m_ = 0;  // how far a localizer sees that gave a fix …
+  std::int64_t view_until_ns_ = 0;  // … lately
   bool frozen_ = false;  // by command
   bool held_ = false;    // by the hold line
 };

@@ -70,12 +70,16 @@ void ZoneKeeper::fail(ZoneId zone, ErrorCode code, std::int64_t now_ns) noexcept
 }
 
 void ZoneKeeper::keep(std::int64_t now_ns, std::span<const ZoneId> wanted,
-                      std::size_t urgent) noexcept {
+                      std::size_t urgent, std::size_t needed) noexcept {
   ZP_REQUIRE(wanted.size() <= kMaxWanted);
   drop_unwanted(wanted);
   does_not_fit_ = kNoZone;
   for (std::size_t place = 0; place < wanted.size(); ++place) {
-    see_to(place, wanted, place < urgent, now_ns);
+    const Demand demand = place == 0        ? Demand::kOwn
+                          : place < urgent  ? Demand::kUrgent
+                          : place < needed  ? Demand::kPossible
+                                            : Demand::kUseful;
+    see_to(place, wanted, demand, now_ns);
   }
   keep_pinned(now_ns);
   set_blocked(does_not_fit_);
@@ -101,33 +105,43 @@ void ZoneKeeper::drop_unwanted(std::span<const ZoneId> wanted) noexcept {
   if (loading_ != kNoZone && !wants(wanted, loading_) && !memory_.pinned(loading_)) cancel_load();
 }
 
-void ZoneKeeper::see_to(std::size_t place, std::span<const ZoneId> wanted, bool urgent,
+void ZoneKeeper::see_to(std::size_t place, std::span<const ZoneId> wanted, Demand demand,
                         std::int64_t now_ns) noexcept {
   const ZoneId zone = wanted[place];
-  const bool own = place == 0;
+  if (zone == loading_) loads_useful_ = demand == Demand::kUseful;
   memory_.protect(zone);
-  if (memory_.state(zone) != ZoneState::kAbsent || !may_start(zone, own, now_ns)) return;
-  const Purpose purpose = own ? Purpose::kOwnZone : Purpose::kApproach;
-  if (admit(zone, purpose)) return;
-  if (urgent) {
+  if (memory_.state(zone) != ZoneState::kAbsent || !may_start(zone, demand, now_ns)) return;
+  const Purpose purpose = demand == Demand::kOwn ? Purpose::kOwnZone : Purpose::kApproach;
+  bool admitted = admit(zone, purpose).ok();
+  if (!admitted && demand != Demand::kPossible) {
     for (std::size_t i = wanted.size(); --i > place;) memory_.unprotect(wanted[i]);
-    if (admit(zone, purpose)) return;
+    admitted = admit(zone, purpose).ok();
   }
-  if (does_not_fit_ == kNoZone) does_not_fit_ = zone;
+  if (admitted) {
+    loads_useful_ = demand == Demand::kUseful;
+  } else if (does_not_fit_ == kNoZone && demand != Demand::kUseful) {
+    does_not_fit_ = zone;
+  }
 }
 
-bool ZoneKeeper::may_start(ZoneId zone, bool own, std::int64_t now_ns) noexcept {
+bool ZoneKeeper::may_start(ZoneId zone, Demand demand, std::int64_t now_ns) noexcept {
   if (held_) return false;
   if (now_ns < retries_[zone].not_before_ns) return false;
   if (loading_ == kNoZone) return true;
-  if (own) cancel_load();
+  if (demand == Demand::kOwn || (loads_useful_ && demand > Demand::kUseful)) cancel_load();
   return false;
 }
 
 void ZoneKeeper::keep_pinned(std::int64_t now_ns) noexcept {
   for (const ZoneId zone : pinned_) {
-    if (memory_.state(zone) != ZoneState::kAbsent || !may_start(zone, false, now_ns)) continue;
-    if (!admit(zone, Purpose::kApproach) && does_not_fit_ == kNoZone) does_not_fit_ = zone;
+    if (zone == loading_) loads_useful_ = false;
+    if (memory_.state(zone) != ZoneState::kAbsent) continue;
+    if (!may_start(zone, Demand::kPossible, now_ns)) continue;
+    if (admit(zone, Purpose::kApproach)) {
+      loads_useful_ = false;
+    } else if (does_not_fit_ == kNoZone) {
+      does_not_fit_ = zone;
+    }
   }
 }
 

@@ -51,8 +51,13 @@ class ZoneKeeper {
   void unpin(ZoneId zone) noexcept;
 
   // Takes what is wanted in this cycle, most urgent first, no zone twice, at most kMaxWanted. The
-  // first is the robot's own zone; those after the first `urgent` are only possible.
-  void keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent) noexcept;
+  // first is the robot's own zone; those after the first `urgent` are only possible, and those
+  // after the first `needed` only useful: they take what room there is and block nothing.
+  void keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent,
+            std::size_t needed) noexcept;
+  void keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent) noexcept {
+    keep(now_ns, wanted, urgent, wanted.size());
+  }
 
   // While held, no load starts; one under way finishes.
   void hold(bool held) noexcept { held_ = held; }
@@ -79,9 +84,10 @@ class ZoneKeeper {
 
   bool wants(std::span<const ZoneId> list, ZoneId zone) const noexcept;
   void drop_unwanted(std::span<const ZoneId> wanted) noexcept;
-  void see_to(std::size_t place, std::span<const ZoneId> wanted, bool urgent,
+  enum class Demand : std::uint8_t { kUseful, kPossible, kUrgent, kOwn };
+  void see_to(std::size_t place, std::span<const ZoneId> wanted, Demand demand,
               std::int64_t now_ns) noexcept;
-  bool may_start(ZoneId zone, bool own, std::int64_t now_ns) noexcept;
+  bool may_start(ZoneId zone, Demand demand, std::int64_t now_ns) noexcept;
   void keep_pinned(std::int64_t now_ns) noexcept;
   Result<std::size_t> admit(ZoneId zone, Purpose purpose) noexcept;
   void cancel_load() noexcept;
@@ -102,6 +108,7 @@ class ZoneKeeper {
   std::size_t wanted_count_ = 0;
   bool held_ = false;
   ZoneId loading_ = kNoZone;
+  bool loads_useful_ = false;  // what is loading is only useful
   ZoneId blocked_ = kNoZone;
   ZoneId does_not_fit_ = kNoZone;  // the most urgent one of this cycle
 };

@@ -115,6 +115,7 @@ void PoseFilter::split_drift(std::uint64_t index, std::int64_t t_ns) noexcept {
   if (trusted_ && index == valid_from_) return;
   make_room();
   history_.split(index, t_ns);
+  trim_.forget_fix();
   candidates_.after_split(index);
 }
 
@@ -127,7 +128,8 @@ void PoseFilter::bridge_pause(const OdometryIncrement& increment) noexcept {
   candidates_.after_rewrite(history_);
 }
 
-void PoseFilter::predict(const OdometryIncrement& increment) noexcept {
+void PoseFilter::predict(const OdometryIncrement& reported) noexcept {
+  const OdometryIncrement increment = trim_.trimmed(reported);
   if (history_.empty()) history_.restart(increment.from_ns);
   const double back_s = seconds_between(increment.to_ns, history_.back().t_ns);
   if (back_s > settings_.history_s) {
@@ -240,10 +242,18 @@ PoseFilter::Placed PoseFilter::find_place(const PoseCorrection& fix, std::int64_
 }
 
 CorrectionVerdict PoseFilter::correct(const PoseCorrection& fix, std::int64_t now_ns) noexcept {
-  const Placed found = find_place(fix, now_ns);
+  Placed found = find_place(fix, now_ns);
   if (!is_used(found.refused)) return count(found.refused);
+  if (fix.view_m > 0 && trusted_) {
+    consistency_.add(mahalanobis2(history_.at(found.index).state, found.pose));
+    found.pose = consistency_.widened(found.pose);
+  }
   const Verdict verdict =
       trusted_ ? place(found.pose, found.index) : support(found.pose, found.index);
+  if (fix.view_m > 0 && trusted_ && is_used(verdict)) {
+    if (verdict != Verdict::kUsed) trim_.forget_fix();
+    trim_.learn(history_, found.pose, found.index);
+  }
   list_hypotheses();
   return count(verdict);
 }

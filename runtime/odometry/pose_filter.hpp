@@ -6,10 +6,12 @@
 #include <span>
 
 #include "runtime/odometry/fix_candidates.hpp"
+#include "runtime/odometry/fix_consistency.hpp"
 #include "runtime/odometry/odometry_history.hpp"
 #include "runtime/odometry/pose.hpp"
 #include "runtime/odometry/se2.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
+#include "runtime/odometry/wheel_trim.hpp"
 
 namespace zonepack {
 
@@ -21,6 +23,9 @@ struct PoseCorrection {
   double sigma_x_m = 0;
   double sigma_y_m = 0;
   double sigma_yaw_rad = 0;
+  // How far ahead a localizer sees that reads the map in memory: zones in its view are then kept
+  // too where they fit. 0: it reads none. The filter does not use it.
+  double view_m = 0;
 };
 
 // What became of a fix.
@@ -87,7 +92,7 @@ class PoseFilter {
   void start_at(std::int64_t t_ns, const Pose2& T_map_base, double sigma_m,
                 double sigma_rad) noexcept;
 
-  void predict(const OdometryIncrement& increment) noexcept;
+  void predict(const OdometryIncrement& reported) noexcept;
 
   // Once per cycle while odometry is stale: uncertainty grows with the time since the newest
   // increment.
@@ -108,6 +113,10 @@ class PoseFilter {
   std::span<const PoseHypothesis> hypotheses() const noexcept;
 
   const PoseFilterCounters& counters() const noexcept { return counters_; }
+
+  // What fixes of a localizer that sees ahead (view_m) taught about the wheels.
+  const WheelTrim& wheel_trim() const noexcept { return trim_; }
+  const FixConsistency& fix_consistency() const noexcept { return consistency_; }
 
  private:
   bool is_plausible(const PoseCorrection& fix) const noexcept;
@@ -144,6 +153,8 @@ class PoseFilter {
   double lost_speed_m_s_ = 0;  // when odometry was last fresh
   double lost_yaw_rate_rad_s_ = 0;
   PoseFilterCounters counters_;
+  WheelTrim trim_;
+  FixConsistency consistency_;
 };
 
 }  // namespace zonepack

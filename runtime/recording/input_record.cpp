@@ -8,7 +8,7 @@ namespace {
 
 // A new member of these must be written and read below, or a recording would not hold it. (Not
 // Command::map: a command for another map never becomes an input.)
-static_assert(sizeof(Command) == 296 && sizeof(LoadResult) == 40 && sizeof(PoseCorrection) == 64 &&
+static_assert(sizeof(Command) == 296 && sizeof(LoadResult) == 40 && sizeof(PoseCorrection) == 72 &&
               sizeof(LineEdge) == 16);
 
 constexpr std::uint8_t kExtended = 1, kFd = 2, kRtr = 4, kErrorFrame = 8, kHasFlags = 16;
@@ -45,6 +45,10 @@ void write_corrections(const CycleInput& input, ByteWriter& out) noexcept {
       out.f64(value);
     }
   }
+}
+
+void write_views(const CycleInput& input, ByteWriter& out) noexcept {
+  for (const PoseCorrection& fix : input.corrections) out.f64(fix.view_m);
 }
 
 void write_loads(const CycleInput& input, ByteWriter& out) noexcept {
@@ -131,6 +135,12 @@ bool read_correction(ByteReader& in, std::int64_t now_ns, PoseCorrection& fix) {
   return in.ok();
 }
 
+// One for each correction, which come before.
+bool read_views(ByteReader& in, std::vector<PoseCorrection>& corrections) {
+  for (PoseCorrection& fix : corrections) fix.view_m = in.f64();
+  return in.finished();
+}
+
 bool read_code(ByteReader& in, ErrorCode& code) {
   const std::uint64_t number = in.varint();
   if (number > static_cast<std::uint16_t>(ErrorCode::kCancelled)) return false;
@@ -178,6 +188,7 @@ bool is_known(std::uint8_t kind) {
     case RecordKind::kCommands:
     case RecordKind::kOffer:
     case RecordKind::kEdges:
+    case RecordKind::kViews:
       return true;
   }
   return false;
@@ -207,6 +218,8 @@ bool read_record(RecordKind kind, ByteReader in, RecordedInput& into) {
       return read_items(in, into.edges, kMostRecordedEdges, [&](ByteReader& item, LineEdge& edge) {
         return read_edge(item, into.now_ns, edge);
       });
+    case RecordKind::kViews:
+      return read_views(in, into.corrections);
   }
   return false;
 }
@@ -220,6 +233,9 @@ std::size_t record_room(std::uint32_t most_frames) noexcept {
 void write_records(const CycleInput& input, ByteWriter& out) noexcept {
   write_record(RecordKind::kFrames, !input.frames.empty(), input, out, write_frames);
   write_record(RecordKind::kCorrections, !input.corrections.empty(), input, out, write_corrections);
+  const bool view = std::any_of(input.corrections.begin(), input.corrections.end(),
+                                [](const PoseCorrection& fix) { return fix.view_m != 0; });
+  write_record(RecordKind::kViews, view, input, out, write_views);
   write_record(RecordKind::kLoads, !input.loads.empty(), input, out, write_loads);
   write_record(RecordKind::kCommands, !input.commands.empty(), input, out, write_commands);
   const bool offered = input.offer.map != 0 || input.offer.fault != ErrorCode::kOk;

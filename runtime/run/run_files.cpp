@@ -18,7 +18,7 @@
 namespace zonepack {
 namespace {
 
-constexpr std::string_view kCorrectionColumns = "stamp received x y yaw sigma_x sigma_y sigma_yaw";
+constexpr std::string_view kCorrectionColumns = "stamp received x y yaw sigma_x sigma_y sigma_yaw [view]";
 constexpr std::string_view kTruthColumns = "t x y z qx qy qz qw";
 
 std::vector<std::string_view> split(std::string_view line) {
@@ -63,7 +63,11 @@ Outcome<void> for_each_record(const std::string& path, std::string_view columns,
   if (const std::string kind = stand_in_at(path); !kind.empty()) {
     return failure(path + ": is " + kind + "; expected lines of " + std::string(columns));
   }
-  const std::size_t count = split(columns).size();
+  const std::vector<std::string_view> names_of_columns = split(columns);
+  // Those in brackets may be absent.
+  const auto count = static_cast<std::size_t>(
+      std::count_if(names_of_columns.begin(), names_of_columns.end(),
+                    [](std::string_view column) { return column.front() != '['; }));
   std::string line;
   bool first = true;
   for (std::size_t number = 1; std::getline(file, line); ++number) {
@@ -124,7 +128,7 @@ Failure not_a_stamp(std::string_view word) {
 Outcome<std::vector<PoseCorrection>> read_corrections_as_written(const std::string& path) {
   std::vector<PoseCorrection> corrections;
   const auto take = [&](std::span<const std::string_view> words) -> Outcome<void> {
-    if (words.size() != 8) return wrong_columns(words);
+    if (words.size() != 8 && words.size() != 9) return wrong_columns(words);
     PoseCorrection c;
     if (!parse_stamp(words[0], c.stamp_ns)) return not_a_stamp(words[0]);
     if (!parse_stamp(words[1], c.received_ns)) return not_a_stamp(words[1]);
@@ -134,6 +138,9 @@ Outcome<std::vector<PoseCorrection>> read_corrections_as_written(const std::stri
     c.sigma_x_m = v[3];
     c.sigma_y_m = v[4];
     c.sigma_yaw_rad = v[5];
+    if (words.size() == 9) {
+      if (auto view = parse_numbers(words, 8, {&c.view_m, 1}); !view) return view;
+    }
     corrections.push_back(c);
     return {};
   };

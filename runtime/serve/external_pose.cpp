@@ -52,6 +52,7 @@ std::optional<PoseCorrection> correction_of(const wire::GivePose& given,
   correction.sigma_x_m = std::sqrt(covariance.xx());
   correction.sigma_y_m = std::sqrt(covariance.yy());
   correction.sigma_yaw_rad = std::sqrt(covariance.yaw_yaw());
+  correction.view_m = std::isfinite(given.view()) ? given.view() : 0;
   return correction;
 }
 

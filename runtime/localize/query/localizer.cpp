@@ -142,6 +142,7 @@ void Localizer::State::polish(const ImageFeatures& image, const Candidates& cand
   }
   count(image, candidates, sightings, refined.T_map_base, result);
   result.visible = count_visible(image, all, camera, refined.T_map_base, kVisible_px * scale);
+  result.floor_z_m = candidates.floor_z_m;
   result.found = refined.valid;
   result.T_map_base = refined.T_map_base;
   result.pose = flatten(refined.T_map_base);

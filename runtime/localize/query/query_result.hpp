@@ -60,6 +60,7 @@ struct QueryResult {
   Pose2 pose;
   Covariance2 covariance;
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
+  double floor_z_m = 0;     // where the map has the floor there
   int features = 0;         // of the image
   int matches = 0;          // of the pass that counts
   int inliers = 0;          // matches that the pose explains

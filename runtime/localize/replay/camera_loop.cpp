@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "runtime/localize/query/fix_slack.hpp"
 #include "runtime/odometry/se2.hpp"
 
 namespace zonepack::localize {
@@ -54,7 +55,7 @@ void CameraLoop::look(const LoopImage& image, const FixMoment& moment,
   LoopView& view = views_.emplace_back();
   view.image = image;
   if (!moment.state.pose.valid) return;
-  const QueryPrior prior = prior_at(image.stamp_ns, moment.state.pose);
+  const QueryPrior prior = with_map_slack(prior_at(image.stamp_ns, moment.state.pose));
   const auto map = features_.in_reach_of(prior, moment.resident);
   view.offered = static_cast<int>(map.size());
   auto result = find_(image, map, prior);
@@ -65,6 +66,8 @@ void CameraLoop::look(const LoopImage& image, const FixMoment& moment,
   }
   view.kind = LoopView::Kind::kQueried;
   view.result = std::move(*result);
+  if (view.result.accepted && tell_fix_) tell_fix_(view.result);
+  view.result.drawn = {};
   if (!view.result.accepted) return;
   view.fix.stamp_ns = image.stamp_ns;
   view.fix.received_ns = std::max(image.stamp_ns + options_.latency_ns, moment.now_ns + 1);
@@ -72,6 +75,7 @@ void CameraLoop::look(const LoopImage& image, const FixMoment& moment,
   view.fix.sigma_x_m = std::sqrt(view.result.covariance.xx);
   view.fix.sigma_y_m = std::sqrt(view.result.covariance.yy);
   view.fix.sigma_yaw_rad = std::sqrt(view.result.covariance.yaw_yaw);
+  view.fix.view_m = kView_m;
   fixes.push_back(view.fix);
 }
 

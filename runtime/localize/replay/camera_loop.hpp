@@ -60,6 +60,9 @@ class CameraLoop final : public FixSource {
   // Called after each image with the number done and the number of all.
   void on_progress(std::function<void(std::size_t, std::size_t)> tell) { tell_ = std::move(tell); }
 
+  // Called with each accepted result, with what is for drawing if the finder gave it.
+  void on_fix(std::function<void(const QueryResult&)> tell) { tell_fix_ = std::move(tell); }
+
   void after_cycle(const FixMoment& moment, std::vector<PoseCorrection>& fixes) override;
 
   // Of the images within the run's time, in their order.
@@ -80,6 +83,7 @@ class CameraLoop final : public FixSource {
   Options options_;
   FeaturesInReach features_;
   std::function<void(std::size_t, std::size_t)> tell_;
+  std::function<void(const QueryResult&)> tell_fix_;
   std::size_t next_ = 0;
   std::vector<LoopView> views_;
   std::vector<std::string> warnings_;

@@ -30,7 +30,7 @@ void add(std::string& line, double value) {
 
 std::string fixes_text(std::span<const LoopView> views) {
   std::string text =
-      "# stamp received x y yaw sigma_x sigma_y sigma_yaw   (seconds, metres, radians; base_link "
+      "# stamp received x y yaw sigma_x sigma_y sigma_yaw view   (seconds, metres, radians; base_link "
       "in map)\n";
   for (const LoopView& view : views) {
     if (!view.result.accepted) continue;
@@ -39,7 +39,7 @@ std::string fixes_text(std::span<const LoopView> views) {
     std::string line = seconds_text(view.image.recorded_stamp_ns) + ' ' +
                        seconds_text(view.image.recorded_stamp_ns + late_ns);
     for (const double value : {fix.T_map_base.x_m, fix.T_map_base.y_m, fix.T_map_base.yaw_rad,
-                               fix.sigma_x_m, fix.sigma_y_m, fix.sigma_yaw_rad}) {
+                               fix.sigma_x_m, fix.sigma_y_m, fix.sigma_yaw_rad, fix.view_m}) {
       add(line, value);
     }
     text += line + '\n';

@@ -12,6 +12,8 @@
 #include "runtime/localize/camera/calibration.hpp"
 #include "runtime/localize/camera/image_file.hpp"
 #include "runtime/localize/camera/image_list.hpp"
+#include "runtime/localize/check/calibration_text.hpp"
+#include "runtime/localize/check/calibration_watch.hpp"
 #include "runtime/localize/query/localizer.hpp"
 #include "runtime/localize/query/map_folder.hpp"
 #include "runtime/localize/replay/camera_loop.hpp"
@@ -31,8 +33,9 @@ namespace zonepack::localize {
 namespace {
 
 constexpr const char* kProgram = "zoneloc replay";
+const char* speaker = kProgram;  // whose messages these are
 
-void note(const std::string& message) { std::cerr << kProgram << ": " << message << '\n'; }
+void note(const std::string& message) { std::cerr << speaker << ": " << message << '\n'; }
 
 // Says now and then how far the images are.
 class Progress {
@@ -132,7 +135,9 @@ Outcome<void> write_figures(const LoopFigures& figures, const LoopArguments& arg
   return failed.all();
 }
 
-Outcome<void> drive(const LoopArguments& arguments) {
+// With `lessons`, that is all it gives: nothing is written.
+Outcome<void> drive(const LoopArguments& arguments, const CameraTraits& camera_is_off_by = {},
+                    LoopLessons* lessons = nullptr) {
   if (arguments.start.kind == StartChoice::Kind::kFix) {
     note(
         "warning: nothing ever says where the robot is, so no zone is loaded and no image is "
@@ -140,6 +145,7 @@ Outcome<void> drive(const LoopArguments& arguments) {
   }
   auto inputs = read_inputs(arguments);
   if (!inputs) return inputs.error();
+  inputs->camera = corrected(inputs->camera, camera_is_off_by);
   const zonepack::Settings& settings = inputs->run.settings;
   const TruthTrack* const truth = inputs->run.truth ? &*inputs->run.truth : nullptr;
   CanLogReader log(arguments.can, settings.can.interface);
@@ -152,6 +158,9 @@ Outcome<void> drive(const LoopArguments& arguments) {
                   {.latency_ns = std::llround(arguments.latency_s * 1e9),
                    .descriptor_bytes = inputs->map.detector.descriptor_bytes()});
   loop.on_progress(Progress());
+  CalibrationWatch watch;
+  localizer.options().keep_matches = true;
+  loop.on_fix([&](const QueryResult& fix) { watch.add(inputs->camera, fix); });
   HeadingWatch heading(truth);
 
   ReplayInput input{inputs->run.catalog, frames};
@@ -177,8 +186,18 @@ Outcome<void> drive(const LoopArguments& arguments) {
                          inputs->images.back().stamp_ns, arguments.can, frames);
   }
 
+  if (lessons != nullptr) {
+    *lessons = {loop.views().size(), std::move(watch)};
+    return {};
+  }
+  const CalibrationReport calibration = watch.report();
+  for (const CalibrationFinding& finding : calibration.findings) {
+    note("warning: " + finding_text(finding, arguments.calibration) +
+         "; zoneloc check prints what to paste");
+  }
   // Read after the run, so that it does not count as the localizer's memory.
   LoopFigures figures = figures_of(loop, result->summary, heading, truth);
+  figures.calibration = calibration;
   if (truth != nullptr) {
     const auto map = MapError::read(inputs->map);
     if (!map) return map.error();
@@ -198,6 +217,16 @@ Outcome<void> drive(const LoopArguments& arguments) {
 }
 
 }  // namespace
+
+Outcome<LoopLessons> drive_for_lessons(const LoopArguments& arguments, const char* program,
+                                       const CameraTraits& camera_is_off_by) {
+  speaker = program;
+  LoopLessons lessons;
+  if (const auto driven = drive(arguments, camera_is_off_by, &lessons); !driven) {
+    return driven.error();
+  }
+  return lessons;
+}
 
 int run_loop(const LoopArguments& arguments) {
   auto done = check_outputs({{"--events", arguments.events, true},

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "platform/base/failure.hpp"
+#include "runtime/localize/check/calibration_watch.hpp"
 #include "runtime/run/run_inputs.hpp"
 
 namespace zonepack::localize {
@@ -17,6 +19,17 @@ struct LoopArguments : RunChoices {
   std::string fixes, events, json, report;
   std::string baseline;  // RTAB-Map's own run, for the report
 };
+
+// What a drive says about the camera.
+struct LoopLessons {
+  std::size_t images = 0;
+  CalibrationWatch watch;
+};
+
+// Drives as run_loop() does, with a camera that is not quite as its calibration says, and writes
+// nothing. `program` stands before messages.
+Outcome<LoopLessons> drive_for_lessons(const LoopArguments& arguments, const char* program,
+                                       const CameraTraits& camera_is_off_by);
 
 // Drives the recorded run in simulated time with fixes from its images; the summary goes to
 // standard output, messages and progress to standard error. Returns the exit code: 0, or 1 when

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/localize/check/calibration_watch.hpp"
 #include "runtime/localize/query/query_result.hpp"
 #include "runtime/localize/replay/camera_loop.hpp"
 #include "runtime/localize/replay/map_error.hpp"
@@ -41,6 +42,7 @@ struct LoopFigures {
   std::optional<std::size_t> found_after_views;
   std::optional<double> found_after_s;
   std::map<std::string, std::size_t> reasons;
+  CalibrationReport calibration;
   RunSummary run;
 };
 

@@ -6,6 +6,7 @@
 #include "platform/base/byte_count.hpp"
 #include "platform/base/json_text.hpp"
 #include "platform/base/number_text.hpp"
+#include "runtime/localize/check/calibration_text.hpp"
 #include "runtime/localize/replay/loop_figures.hpp"
 
 namespace zonepack::localize {
@@ -93,6 +94,7 @@ std::string figures_json(const LoopFigures& f) {
   add("found_after_views", json_of(f.found_after_views));
   add("found_after_s", json_of(f.found_after_s));
   add("reasons", reasons_json(f));
+  add("calibration", report_json(f.calibration));
   add("budget_bytes", std::to_string(f.run.budget_bytes));
   add("peak_charged_bytes", std::to_string(f.run.peak_charged_bytes));
   add("corrections_used", std::to_string(f.run.corrections_used));

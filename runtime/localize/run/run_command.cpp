@@ -13,6 +13,7 @@
 #include "platform/signals.hpp"
 #include "platform/write_output.hpp"
 #include "runtime/localize/camera/calibration.hpp"
+#include "runtime/localize/query/fix_slack.hpp"
 #include "runtime/localize/query/localizer.hpp"
 #include "runtime/localize/run/complaints.hpp"
 #include "runtime/localize/run/fix_counters.hpp"
@@ -187,7 +188,8 @@ void Run::look(const GreyImage& image) {
     }
     return;
   }
-  const QueryPrior prior = pose_at(*state, on_run_clock(image.stamp_ns, clock, *state, offset_ns));
+  const QueryPrior prior =
+      with_map_slack(pose_at(*state, on_run_clock(image.stamp_ns, clock, *state, offset_ns)));
   const auto map = features_->near(*link_, prior);
   const QueryResult result = localizer_->query(image, map, prior);
   if (result.accepted) give(image, result);

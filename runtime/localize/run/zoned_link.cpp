@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "platform/clock.hpp"
+#include "runtime/localize/query/fix_slack.hpp"
 #include "runtime/odometry/det_math.hpp"
 
 namespace zonepack::localize {
@@ -151,7 +152,8 @@ Result<void> ZonedLink::give(const QueryResult& fix, std::int64_t stamp_ns, Imag
   const wire::Covariance covariance(c.xx, c.xy, c.x_yaw, c.yy, c.y_yaw, c.yaw_yaw);
   return done_or(client_.connection().ask(
       message,
-      wire::CreateGivePose(message.builder(), wire_clock(clock), stamp_ns, &pose, &covariance)));
+      wire::CreateGivePose(message.builder(), wire_clock(clock), stamp_ns, &pose,
+                                     &covariance, kView_m)));
 }
 
 Result<void> ZonedLink::report(const FixCounters& counters, const std::string& camera) {

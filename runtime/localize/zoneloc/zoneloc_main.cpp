@@ -29,6 +29,8 @@ int main(int argc, char** argv) {
   zonepack::localize::add_query(app, query, command);
   zonepack::localize::LoopArguments replay;
   zonepack::localize::add_replay(app, replay, command);
+  zonepack::localize::LoopArguments check;
+  zonepack::localize::add_check(app, check, command);
   try {
     zonepack::parse_command_line(app, argc, argv);
   } catch (const CLI::ParseError& error) {
