@@ -75,6 +75,7 @@ std::string json_of(const Answer& answer) {
   add("needed", std::to_string(answer.asked.needed));
   add("cells", std::to_string(r.cells));
   add("visible", std::to_string(r.visible));
+  add("evidence", digits_of(r.evidence, 2));
   add("residual_px", digits_of(r.residual_px, 3));
   add("signatures", std::to_string(r.signatures));
   add("best_signature", r.found ? std::to_string(r.best) : "null");

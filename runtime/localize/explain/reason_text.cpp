@@ -67,8 +67,9 @@ std::string reason_text(const QueryResult& result, const QueryAsked& asked) {
              std::to_string(result.matches) + nearest_text(result, asked);
     case Reason::kChance:
       return inliers + " matches agree, but no more and no more alike than chance gives where " +
-             std::to_string(result.visible) + " features have a point of the map nearby" +
-             nearest_text(result, asked);
+             std::to_string(result.visible) +
+             " features have a point of the map nearby (evidence " + rounded(result.evidence, 1) +
+             " of " + rounded(kLeastEvidence, 1) + " needed)" + nearest_text(result, asked);
     case Reason::kGathered:
       return inliers + " matches agree, but in " + std::to_string(result.cells) + " of " +
              std::to_string(asked.needed_cells) + " parts of the image needed" +

@@ -12,7 +12,7 @@ namespace zonepack::localize {
 struct QueryAsked {
   CameraModel camera;
   int image_width = 0, image_height = 0;
-  int needed = 15, needed_cells = 4;
+  int needed = 10, needed_cells = 4;
   bool with_prior = false;
   std::string nearest_zone;  // by name
 };

@@ -31,16 +31,37 @@ constexpr std::size_t kSecondPassSignatures = 60;
 constexpr double kMostTilt_rad = 6 * std::numbers::pi / 180;
 constexpr double kMostLift_m = 0.12;
 constexpr double kDistinct_px = 4;
-// By chance 4 in 100 features near a projected point agree with it, weighted by likeness: a dense
-// map gives more wrong inliers than a sparse one. Measured with priors at false places.
-constexpr double kChance = 0.04, kLeastSure = 5.4;
-constexpr double kMostSigma_m = 0.065;  // a vaguer pose is of no use
+// The evidence for a pose: each distinct inlier counts by how alike its descriptors are and how
+// well it agrees, less what chance gives (4 in 100 features near a projected point: a dense map
+// gives more wrong inliers than a sparse one), less what the prior says against the pose. Fitted to
+// 2,600 right poses and 21,000 at false priors on two maps, images undisturbed and spoilt in eight
+// ways; a false prior reaches kLeastEvidence about once in 1,000 times.
+constexpr double kChance = 0.04, kOffPrior = 0.5;
+constexpr double kMostSigma_m = 0.1;  // a vaguer pose is of no use
 // Errors of the map itself, which no number of inliers averages out.
 constexpr double kMapSigma_m = 0.01;
 constexpr double kMapSigma_rad = 0.1 * std::numbers::pi / 180;
 
-double sure_beyond_chance(const QueryResult& result) {
-  return result.sure - kChance * result.visible;
+// The variance, along each axis, of errors of which only those below `most_px` are seen: with u =
+// most^2 / (2 variance), their mean square is most^2 (1 / u - 1 / (e^u - 1)), which grows with the
+// variance. Bounded by most^2: errors that fill the disc evenly say nothing about it.
+double variance_of_truncated(double root_mean_square_px, double most_px) {
+  const double share = std::pow(root_mean_square_px / most_px, 2);
+  double least = 0.5, most = 50;  // of u
+  for (int step = 0; step < 40; ++step) {
+    const double u = (least + most) / 2;
+    (1 / u - 1 / std::expm1(u) > share ? least : most) = u;
+  }
+  return most_px * most_px / (least + most);
+}
+
+// How far a pose is from the prior, as a squared Mahalanobis distance.
+double off_prior2(const QueryPrior& prior, const QueryResult& result) {
+  Covariance2 around = prior.covariance;
+  around.xx += 0.01;
+  around.yy += 0.01;
+  around.yaw_yaw += 1e-3;
+  return mahalanobis2({prior.T_map_base, around}, {result.pose, result.covariance});
 }
 
 std::size_t count_features(const std::vector<Sighting>& sightings) {
@@ -61,7 +82,7 @@ void Localizer::State::count(const ImageFeatures& image, const Candidates& candi
   const double most2 = std::pow(kInlier_px * scale, 2);
   std::array<bool, 16> cells{};
   std::vector<Eigen::Vector2d> distinct;
-  std::vector<double> weights;  // of each
+  std::vector<double> weights, agreement;  // of each
   std::vector<int> of_signature(candidates.reach.size());
   double sum2 = 0;
   result.matches = static_cast<int>(sightings.size());
@@ -97,9 +118,12 @@ void Localizer::State::count(const ImageFeatures& image, const Candidates& candi
     if (same != distinct.end()) {
       double& best = weights[static_cast<std::size_t>(same - distinct.begin())];
       best = std::max(best, sighting.weight);
+      double& agreed = agreement[static_cast<std::size_t>(same - distinct.begin())];
+      agreed = std::max(agreed, sighting.weight * (1 - e2 / (2 * most2)));
       continue;
     }
     weights.push_back(sighting.weight);
+    agreement.push_back(sighting.weight * (1 - e2 / (2 * most2)));
     distinct.push_back(sighting.px);
     const int column = std::clamp(static_cast<int>(sighting.px.x() * 4 / camera.width), 0, 3);
     const int row = std::clamp(static_cast<int>(sighting.px.y() * 4 / camera.height), 0, 3);
@@ -107,6 +131,7 @@ void Localizer::State::count(const ImageFeatures& image, const Candidates& candi
   }
   result.distinct = static_cast<int>(distinct.size());
   result.sure = std::accumulate(weights.begin(), weights.end(), 0.0);
+  result.evidence = std::accumulate(agreement.begin(), agreement.end(), 0.0);
   result.cells = static_cast<int>(std::count(cells.begin(), cells.end(), true));
   result.residual_px = result.inliers > 0 ? std::sqrt(sum2 / result.inliers) : 0;
   if (!of_signature.empty()) {
@@ -149,7 +174,8 @@ void Localizer::State::polish(const ImageFeatures& image, const Candidates& cand
   // Several signatures see one feature with the same error: only distinct ones count.
   const double repeated =
       std::max(1.0, static_cast<double>(result.inliers) / std::max(1, result.distinct));
-  const double worse = repeated * std::max(1.0, std::pow(result.residual_px / scale, 2));
+  const double worse =
+      repeated * std::max(1.0, 2 * variance_of_truncated(result.residual_px / scale, kInlier_px));
   const Covariance2& c = refined.covariance;
   result.covariance = {c.xx * worse + kMapSigma_m * kMapSigma_m,
                        c.xy * worse,
@@ -164,7 +190,7 @@ void Localizer::State::judge(const Candidates& candidates, const QueryPrior& pri
   const auto refuse = [&](Reason reason) { result.reason = reason; };
   result.accepted = false;
   if (!result.found || result.distinct < options.needed) return refuse(Reason::kFewInliers);
-  if (sure_beyond_chance(result) < kLeastSure) return refuse(Reason::kChance);
+  if (result.evidence < kLeastEvidence) return refuse(Reason::kChance);
   if (result.cells < options.needed_cells) return refuse(Reason::kGathered);
   const Eigen::Vector3d up = result.T_map_base.linear().col(2);
   const double lift_m = result.T_map_base.translation().z() - candidates.floor_z_m;
@@ -173,11 +199,7 @@ void Localizer::State::judge(const Candidates& candidates, const QueryPrior& pri
   }
   if (position_sigma_m(result.covariance) > kMostSigma_m) return refuse(Reason::kUnsure);
   // 4 standard deviations of three values: 1 in 900 of right ones.
-  Covariance2 around = prior.covariance;
-  around.xx += 0.01;
-  around.yy += 0.01;
-  around.yaw_yaw += 1e-3;
-  if (mahalanobis2({prior.T_map_base, around}, {result.pose, result.covariance}) > 18) {
+  if (off_prior2(prior, result) > 18) {
     return refuse(Reason::kFarFromPrior);
   }
   result.accepted = true;
@@ -234,7 +256,8 @@ void Localizer::State::locate_near(const ImageFeatures& image,
     const Refined first = refine(sightings, camera, lifted, plane, refining);
     QueryResult here = result;
     polish(image, candidates, first.valid ? first.T_map_base : lifted, here);
-    if (!best || sure_beyond_chance(here) > sure_beyond_chance(*best)) best = std::move(here);
+    here.evidence -= kChance * here.visible + kOffPrior * off_prior2(prior, here);
+    if (!best || here.evidence > best->evidence) best = std::move(here);
   }
   result = std::move(*best);
   judge(candidates, prior, result);

@@ -15,7 +15,7 @@
 namespace zonepack::localize {
 
 struct QueryOptions {
-  int needed = 15;            // distinct inliers
+  int needed = 10;            // distinct inliers
   int needed_cells = 4;       // of the 4x4 of the image
   std::uint64_t seed = 1;     // of RANSAC: the same seed, the same result
   bool keep_matches = false;  // fill QueryResult::drawn

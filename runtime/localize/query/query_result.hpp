@@ -52,6 +52,9 @@ struct DrawnMatch {
   bool inlier = false;
 };
 
+// Of a pose that is accepted; QueryResult::evidence.
+inline constexpr double kLeastEvidence = 4;
+
 struct QueryResult {
   bool accepted = false;
   Reason reason = Reason::kNoFeatures;
@@ -60,15 +63,16 @@ struct QueryResult {
   Pose2 pose;
   Covariance2 covariance;
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
-  double floor_z_m = 0;     // where the map has the floor there
-  int features = 0;         // of the image
-  int matches = 0;          // of the pass that counts
-  int inliers = 0;          // matches that the pose explains
-  int distinct = 0;         // inliers of distinct features of the image at distinct pixels
-  double sure = 0;          // the distinct ones, each by how alike its descriptors are, 0 to 1
-  int cells = 0;            // of the 4x4 of the image that hold an inlier
-  int visible = 0;          // features of the image with a projected map point within 8 px
-  int signatures = 0;       // candidates that were looked at
+  double floor_z_m = 0;  // where the map has the floor there
+  int features = 0;      // of the image
+  int matches = 0;       // of the pass that counts
+  int inliers = 0;       // matches that the pose explains
+  int distinct = 0;      // inliers of distinct features of the image at distinct pixels
+  double sure = 0;       // the distinct ones, each by how alike its descriptors are, 0 to 1
+  double evidence = 0;   // the same by how well they agree too, less chance and what the prior says
+  int cells = 0;         // of the 4x4 of the image that hold an inlier
+  int visible = 0;       // features of the image with a projected map point within 8 px
+  int signatures = 0;    // candidates that were looked at
   SignatureId nearest = 0;  // signature nearest to the prior, when there is one
   ZoneId nearest_zone = kNoZone;
   double nearest_m = 0;         // its distance

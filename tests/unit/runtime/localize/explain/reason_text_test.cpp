@@ -16,12 +16,24 @@ TEST(ReasonText, NamesTheFiguresThatDecided) {
   result.nearest_m = 0.8;
   result.nearest_turn_rad = 1.6406;  // 94 degrees
   QueryAsked asked;
+  asked.needed = 15;
   asked.with_prior = true;
   asked.nearest_zone = "L1";
   EXPECT_EQ(
       reason_text(result, asked),
       "12 of 15 matches needed; the nearest signature (412 in L1, 0.8 m away) looks 94 degrees "
       "to the side");
+}
+
+TEST(ReasonText, SaysHowMuchEvidenceIsMissing) {
+  QueryResult result;
+  result.reason = Reason::kChance;
+  result.distinct = 18;
+  result.visible = 120;
+  result.evidence = 1.25;
+  EXPECT_EQ(reason_text(result, {}),
+            "18 matches agree, but no more and no more alike than chance gives where 120 features "
+            "have a point of the map nearby (evidence 1.2 of 4.0 needed)");
 }
 
 TEST(ReasonText, SaysSomethingForEveryReason) {
