@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "runtime/report/chart.hpp"
+#include "runtime/report/floor_plan_dots.hpp"
 #include "runtime/report/floor_plan_marks.hpp"
 #include "runtime/report/format.hpp"
 #include "runtime/report/legend.hpp"
@@ -71,9 +72,12 @@ std::vector<LegendItem> legend_of(const FloorPlan& plan) {
   if (!plan.route.empty()) {
     items.push_back({Mark::kThickLine, plan.route.front().color, "route, coloured by zone"});
   }
-  if (!plan.true_route.empty()) items.push_back({Mark::kDashedLine, kInk, "true route"});
+  if (!plan.true_route.empty()) {
+    items.push_back({Mark::kDashedLine, kInk, plan.true_route_name});
+  }
   if (!plan.portals.empty()) items.push_back({Mark::kThickLine, kDoor, "portal"});
   if (!plan.signatures.empty()) items.push_back({Mark::kDot, kQuiet, "signature"});
+  add_dot_legend(plan, items);
   add_mark_legend(plan, items);
   return items;
 }
@@ -299,9 +303,12 @@ Svg draw_floor_plan(const FloorPlan& plan) {
   draw_routes(svg, plan, view);
   svg.close();
   draw_labels(svg, plan, view);
-  svg.open_clip(view.corner(), view.width(), view.height());
-  draw_marks(svg, plan, view);
-  svg.close();
+  if (!plan.dots.empty() || !plan.faults.empty() || !plan.orphans.empty()) {
+    svg.open_clip(view.corner(), view.width(), view.height());
+    draw_dots(svg, plan, view);
+    draw_marks(svg, plan, view);
+    svg.close();
+  }
   svg.set_data("plan", transform_of(view));
   return svg;
 }
@@ -316,5 +323,7 @@ std::string plan_json(const FloorPlan& plan) {
   for (const PlanZone& zone : plan.zones) names.push_back(zone.name);
   return "{\"kind\":\"plan\",\"zones\":" + script_strings(names) + "}";
 }
+
+std::string dots_json() { return "{\"kind\":\"dots\"}"; }
 
 }  // namespace zonepack::report

@@ -60,6 +60,9 @@ void Svg::shape(std::string_view name, std::string_view attributes, const Style&
   }
   if (style.opacity < 1) body_ += attribute("opacity", style.opacity);
   if (style.zone) body_ += attribute("data-zone", std::to_string(*style.zone));
+  if (style.moment_s) {
+    body_ += attribute("data-t", std::to_string(std::llround(*style.moment_s * 1000)));
+  }
   if (style.hint.empty()) {
     body_ += "/>\n";
   } else {

@@ -28,6 +28,7 @@ struct Style {
   bool round = false;                    // line ends and joins
   std::string_view hint = {};            // shown while the mouse is over the shape
   std::optional<std::size_t> zone = {};  // the shape is this zone's ground: data-zone, for a script
+  std::optional<double> moment_s = {};   // of the run, when this was so: data-t, in milliseconds
 };
 
 enum class Anchor { kStart, kMiddle, kEnd };

@@ -14,9 +14,11 @@
 #include "runtime/localize/camera/image_list.hpp"
 #include "runtime/localize/query/localizer.hpp"
 #include "runtime/localize/query/map_folder.hpp"
+#include "runtime/localize/replay/beside_run.hpp"
 #include "runtime/localize/replay/camera_loop.hpp"
 #include "runtime/localize/replay/fixes_file.hpp"
 #include "runtime/localize/replay/loop_figures.hpp"
+#include "runtime/localize/replay/loop_report.hpp"
 #include "runtime/localize/replay/map_error.hpp"
 #include "runtime/replay/replay.hpp"
 #include "runtime/run/baseline.hpp"
@@ -59,6 +61,7 @@ struct LoopInputs {
   CameraModel camera;
   std::vector<LoopImage> images;
   std::vector<BaselineRow> baseline;
+  std::optional<BesideRun> beside;
 };
 
 // Fails when the list's first image is not of the calibration's size: then none is.
@@ -97,16 +100,25 @@ Outcome<LoopInputs> read_inputs(const LoopArguments& arguments) {
     if (!rows) return rows.error();
     baseline = std::move(*rows);
   }
+  std::optional<BesideRun> beside;
+  if (!arguments.beside.empty()) {
+    auto other = read_beside(arguments.beside);
+    if (!other) return other.error();
+    beside = std::move(*other);
+  }
   const LogTime time = LogTime::read(arguments.can, run->settings.can.interface);
   if (run->truth) run->truth = time.on_first_clock(*run->truth);
+  if (beside) {
+    for (BesideRun::Fix& fix : beside->fixes) fix.stamp_ns = time.on_first_clock(fix.stamp_ns);
+  }
   std::vector<LoopImage> images;
   for (ListedImage& image : *listed) {
     images.push_back({time.on_first_clock(image.stamp_ns), image.stamp_ns, std::move(image.file)});
   }
   std::stable_sort(images.begin(), images.end(),
                    [](const LoopImage& a, const LoopImage& b) { return a.stamp_ns < b.stamp_ns; });
-  return LoopInputs{std::move(*run), std::move(*map), *camera, std::move(images),
-                    std::move(baseline)};
+  return LoopInputs{std::move(*run),   std::move(*map),     *camera,
+                    std::move(images), std::move(baseline), std::move(beside)};
 }
 
 ImageFinder finder(Localizer& localizer) {
@@ -128,6 +140,25 @@ Outcome<void> write_figures(const LoopFigures& figures, const LoopArguments& arg
   if (!json_on_output && !arguments.json.empty()) {
     const auto written = write_file_atomically(arguments.json, figures_json(figures));
     if (!written) failed.add(cannot_write(arguments.json, written.error()));
+  }
+  return failed.all();
+}
+
+Outcome<void> draw(const LoopArguments& arguments, const LoopInputs& inputs,
+                   const ReplayResult& result, const CameraLoop& loop, const LoopFigures& figures) {
+  const RunReportInput run{inputs.run.catalog.folder, arguments.can, result.summary, result.trace,
+                           inputs.baseline};
+  const LoopReportInput input{.run = run,
+                              .loop = loop,
+                              .figures = figures,
+                              .truth = inputs.run.truth ? &*inputs.run.truth : nullptr,
+                              .beside = inputs.beside ? &*inputs.beside : nullptr};
+  Failures failed;
+  if (!arguments.report.empty()) {
+    failed.add(report::write_report(arguments.report, make_loop_report(input)));
+  }
+  if (!arguments.picture.empty()) {
+    failed.add(report::write_report(arguments.picture, make_loop_picture(input)));
   }
   return failed.all();
 }
@@ -188,11 +219,11 @@ Outcome<void> drive(const LoopArguments& arguments) {
   failed.add(result->events_written);
   if (!arguments.fixes.empty()) failed.add(write_fixes(arguments.fixes, loop.views()));
   failed.add(write_figures(figures, arguments));
-  if (!arguments.report.empty()) {
-    const RunReportInput run{inputs->run.catalog.folder, arguments.can, result->summary,
-                             result->trace, inputs->baseline};
-    failed.add(report::write_report(arguments.report, make_run_report(run)));
+  if (inputs->beside && !inputs->beside->fixes.empty()) {
+    failed.add(check_overlap(arguments.beside, inputs->beside->fixes.front().stamp_ns,
+                             inputs->beside->fixes.back().stamp_ns, arguments.can, frames));
   }
+  failed.add(draw(arguments, *inputs, *result, loop, figures));
   failed.add(check_limits(result->summary));
   return failed.all();
 }
@@ -203,7 +234,8 @@ int run_loop(const LoopArguments& arguments) {
   auto done = check_outputs({{"--events", arguments.events, true},
                              {"--json", arguments.json, true},
                              {"--fixes", arguments.fixes},
-                             {"--report", arguments.report}});
+                             {"--report", arguments.report},
+                             {"--picture", arguments.picture}});
   if (done) done = drive(arguments);
   return done ? 0 : report_failure(kProgram, done.error());
 }
