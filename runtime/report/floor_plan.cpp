@@ -198,12 +198,20 @@ void draw_routes(Svg& svg, const FloorPlan& plan, const PlanView& view) {
   svg.rect({end.x - 4, end.y - 4}, 8, 8, {.fill = kInk, .stroke = kWhite, .hint = "end"});
 }
 
-// What labels should not hide: the route, thinned to a few pixels, and the portals.
+// What labels should not hide: routes and dots, thinned to a few pixels, and the portals.
 std::vector<Px> points_to_keep(const FloorPlan& plan, const PlanView& view) {
   std::vector<Px> points;
   for (const PlanRoutePoint& point : plan.route) {
     const Px p = view(point.p_map);
     if (points.empty() || distance_px(points.back(), p) >= 4) points.push_back(p);
+  }
+  if (!plan.dots.empty()) {
+    for (const Point2& p : plan.true_route) {
+      if (points.empty() || distance_px(points.back(), view(p)) >= 4) points.push_back(view(p));
+    }
+  }
+  for (const PlanDots& layer : plan.dots) {
+    for (const PlanDot& dot : layer.dots) points.push_back(view(dot.p_map));
   }
   for (const Segment2& portal : plan.portals) {
     for (const double t : {0.0, 0.5, 1.0}) {

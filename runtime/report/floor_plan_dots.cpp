@@ -8,7 +8,7 @@ namespace zonepack::report {
 namespace {
 
 constexpr double kDotRadius = 3, kRingRadius = 5;  // pixels
-constexpr double kOnPhone = 0.75;                  // of these
+constexpr double kOnPhone = 0.5;                   // of these
 
 }  // namespace
 

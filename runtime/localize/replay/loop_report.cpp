@@ -247,6 +247,9 @@ std::string headline(const LoopReportInput& input, const Fixes& fixes) {
   }
   if (input.beside == nullptr) return text + ".";
   text += "; " + input.beside->name + " found " + format_count(fixes.beside.fixes);
+  if (input.beside->images > 0) {
+    text += " (" + share_text(fixes.beside.fixes, input.beside->images) + ")";
+  }
   if (input.truth != nullptr && fixes.beside.wrong > 0) {
     text += ", " + format_count(fixes.beside.wrong) + " wrong";
   }
