@@ -52,7 +52,7 @@ ARROWS = {
     "runtime/listen": "platform platform/base platform/sim runtime/calibrate runtime/live runtime/odometry runtime/run"
                       " runtime/settings",
     "runtime/localize/replay": "platform platform/base runtime/client runtime/localize/camera runtime/localize/query"
-                               " runtime/odometry runtime/replay runtime/run",
+                               " runtime/odometry runtime/replay runtime/report runtime/run",
     "runtime/zoned": "platform platform/command_line platform/version runtime/calibrate runtime/listen runtime/live"
                      " runtime/pack_format/file"
                      " runtime/recording runtime/replay runtime/report",

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <utility>
 
@@ -64,18 +65,19 @@ struct LoopInputs {
   std::optional<BesideRun> beside;
 };
 
+std::string size_text(int width, int height) {
+  return std::to_string(width) + "x" + std::to_string(height);
+}
+
 // Fails when the list's first image is not of the calibration's size: then none is.
 Outcome<void> check_size(const std::vector<ListedImage>& images, const LoopArguments& arguments,
                          const CameraModel& camera) {
   const auto image = read_image(images.front().file);
   if (!image) return {};  // refused by name when its time comes
   if (image->width == camera.width && image->height == camera.height) return {};
-  const auto size = [](int width, int height) {
-    return std::to_string(width) + "x" + std::to_string(height);
-  };
-  return failure(images.front().file + ": is " + size(image->width, image->height) + ", but " +
-                 arguments.calibration + " is for images of " + size(camera.width, camera.height) +
-                 "; give the calibration of this camera");
+  return failure(images.front().file + ": is " + size_text(image->width, image->height) + ", but " +
+                 arguments.calibration + " is for images of " +
+                 size_text(camera.width, camera.height) + "; give the calibration of this camera");
 }
 
 Outcome<LoopInputs> read_inputs(const LoopArguments& arguments) {
@@ -121,15 +123,39 @@ Outcome<LoopInputs> read_inputs(const LoopArguments& arguments) {
                     std::move(images), std::move(baseline), std::move(beside)};
 }
 
-ImageFinder finder(Localizer& localizer) {
-  return [&localizer](const LoopImage& image, std::span<const MapFeatures* const> map,
-                      const QueryPrior& prior) -> Outcome<QueryResult> {
+// Reads the images and looks at them. A camera that hangs gives the same image over and over: no
+// camera's noise is the same twice, so a repetition is refused as `zoneloc run` refuses it.
+class Finder {
+ public:
+  Finder(Localizer& localizer, const CameraModel& camera)
+      : localizer_(localizer), camera_(camera) {}
+
+  Outcome<QueryResult> operator()(const LoopImage& image, std::span<const MapFeatures* const> map,
+                                  const QueryPrior& prior) {
     auto pixels = read_image(image.file);
     if (!pixels) return pixels.error();
-    pixels->stamp_ns = image.stamp_ns;
-    return localizer.query(*pixels, map, prior);
-  };
-}
+    if (!last_.pixels.empty() && pixels->width == last_.width && pixels->height == last_.height &&
+        pixels->pixels == last_.pixels) {
+      return failure(image.file +
+                     ": repeats the image before bit for bit: the camera hangs; "
+                     "nothing is sent for it");
+    }
+    last_ = std::move(*pixels);
+    last_.stamp_ns = image.stamp_ns;
+    if ((last_.width != camera_.width || last_.height != camera_.height) && ++wrong_size_ <= 5) {
+      note("warning: " + image.file + ": is " + size_text(last_.width, last_.height) +
+           ", but the calibration is for images of " + size_text(camera_.width, camera_.height) +
+           "; nothing is sent for it");
+    }
+    return localizer_.query(last_, map, prior);
+  }
+
+ private:
+  Localizer& localizer_;
+  const CameraModel& camera_;
+  GreyImage last_;
+  std::size_t wrong_size_ = 0;
+};
 
 Outcome<void> write_figures(const LoopFigures& figures, const LoopArguments& arguments) {
   Failures failed;
@@ -179,7 +205,8 @@ Outcome<void> drive(const LoopArguments& arguments) {
   }
   LogMatch frames(log);
   Localizer localizer(inputs->camera, inputs->map.detector);
-  CameraLoop loop(inputs->images, finder(localizer),
+  Finder finder(localizer, inputs->camera);
+  CameraLoop loop(inputs->images, std::ref(finder),
                   {.latency_ns = std::llround(arguments.latency_s * 1e9),
                    .descriptor_bytes = inputs->map.detector.descriptor_bytes()});
   loop.on_progress(Progress());
