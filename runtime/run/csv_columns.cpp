@@ -79,8 +79,7 @@ class Reader {
     for (const std::string_view name : names_) {
       const auto found = std::ranges::find(cells, name);
       if (found == cells.end()) {
-        return at("no column '" + std::string(name) + "'; " + what_ + " needs the columns " +
-                  wanted());
+        return at("no column '" + std::string(name) + "'; expected the columns " + wanted());
       }
       columns_.push_back(static_cast<std::size_t>(found - cells.begin()));
     }
