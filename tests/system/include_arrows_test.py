@@ -71,7 +71,7 @@ ARROWS = {
     "runtime/localize/run": "platform platform/base runtime/client runtime/localize/camera"
                             " runtime/localize/query runtime/odometry runtime/protocol runtime/run runtime/settings",
     "runtime/localize/zoneloc": "platform platform/command_line platform/version runtime/localize/explain"
-                                " runtime/localize/replay runtime/localize/run runtime/protocol runtime/report",
+                                " runtime/localize/replay runtime/localize/run runtime/protocol runtime/report runtime/run",
 
     "packer/record": "",
     "packer/sources": "packer/record platform/base",
