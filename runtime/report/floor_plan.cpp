@@ -282,7 +282,8 @@ Svg draw_floor_plan(const FloorPlan& plan) {
   const std::vector<LegendItem> legend = legend_of(plan);
   const double plot_width = plan.width_px - kPlanLeft - kPlanRight;
   const double top = legend_height(plot_width, legend) + 8;
-  const PlanView view(area_of(plan), {kPlanLeft, top}, plot_width, kMostHeight);
+  const PlanView view(area_of(plan), {kPlanLeft, top}, plot_width, kMostHeight,
+                      plan.width_px <= kNarrowWidth_px);
 
   Svg svg(plan.width_px, top + view.height() + kPlanAxisBelow);
   draw_legend(svg, {kPlanLeft, 0}, plot_width, legend);

@@ -9,8 +9,8 @@
 #include "runtime/report/svg.hpp"
 
 // A map seen from above: zones, portals, signatures and routes in metres of the map frame, drawn to
-// one scale. A map much taller than wide is turned by a quarter (page right = +y, page down = +x);
-// the axes say so.
+// one scale. A map much taller than wide is turned by a quarter (page right = +y, page down = +x),
+// but not for a phone, which is itself taller than wide; the axes say so.
 namespace zonepack::report {
 
 struct PlanZone {
@@ -89,7 +89,7 @@ struct FloorPlan {
 // (x, y) of the map into (a x + c y + e, b x + d y + f) on the page.
 Svg draw_floor_plan(const FloorPlan& plan);
 
-// The same plan for a page as narrow as a phone's.
+// The same plan for a page as narrow as a phone's: never turned, as a phone is taller than wide.
 FloorPlan narrowed(FloorPlan plan);
 
 // What the page's script needs: to name zones, and to name dots.

@@ -129,9 +129,11 @@ void Svg::text(Px baseline, std::string_view text, const TextStyle& style) {
   body_.append(">").append(escape_xml(text)).append("</text>\n");
 }
 
-void Svg::image(Px corner, double width, double height, bool turned, std::string_view png) {
+void Svg::image(Px corner, double width, double height, bool turned, std::string_view png,
+                bool ground) {
   if (!is_finite(corner)) return;
   body_ += "<image";
+  if (ground) body_ += attribute("class", "ground");
   if (turned) {
     const std::string right = number(corner.x + height), down = number(corner.y);
     body_.append(" transform=\"matrix(0 1 -1 0 ")
