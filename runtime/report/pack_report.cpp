@@ -116,8 +116,7 @@ Report make_pack_report(const PackReport& map) {
       {"Floor plan",
        "The stronger the colour of a zone, the more bytes it takes while it is in memory. Dots are "
        "signatures, where the camera stood; orange bars are portals, where the robot goes from "
-       "zone "
-       "to zone." +
+       "zone to zone." +
            std::string(map.ground
                            ? " Walls and furniture are what the mapping robot saw, the veil what "
                              "it did not see."
