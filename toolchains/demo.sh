@@ -25,4 +25,5 @@ echo "== localize: the same drive in the same bytes, its pose from the camera an
 "$bin/zoneloc" replay --config config/agilex.yaml --map "$out/map" --can $run/can0.log --images $run/rgb.txt \
   --calibration $run/calibration.yaml --truth $run/base_groundtruth.txt --start truth --budget "$budget" \
   --baseline $data/rtabmap_baseline/small_scenario1_loop_thr100_ret10_inittrue.csv \
+  --beside $data/rtabmap_baseline/small_scenario1_loop_thr100_ret10_inittrue.csv \
   --json "$out/localizer.json" --report "$out/localizer.html"

@@ -186,7 +186,8 @@ report::Report make_zones_page(const ZonesOnMap& map) {
   page.facts = facts_of(map);
   page.figures.push_back(
       {"Floor plan",
-       "Zones are coloured by zone_type. Dark is what the mapping robot saw as occupied, grey what "
+       "Zones are coloured by zone_type. Walls and furniture are what the mapping robot saw, the "
+       "veil what "
        "it did not see. Dots are signatures, orange bars are portals. Red is what is wrong, "
        "numbered as in the table of faults.",
        draw_floor_plan(plan_of(map))});

@@ -175,10 +175,10 @@ void check_extent(const Drawing& drawing, Findings& findings) {
 std::vector<OutlineFault> outline_faults(const Polygon& polygon) {
   std::vector<OutlineFault> faults;
   const std::uint64_t vertices = vertices_of(polygon);
-  if (vertices > kMaxVerticesPerZone) {
+  if (is_over(LimitId::kVerticesOfZone, vertices)) {
+    const Limit& most = limit(LimitId::kVerticesOfZone);
     faults.push_back({"has " + std::to_string(vertices) + " vertices; at most " +
-                      std::to_string(kMaxVerticesPerZone) +
-                      " are allowed: simplify it (QGIS: Vector > Geometry Tools > Simplify)"});
+                      std::to_string(most.most) + " are allowed: " + most.remedy});
     return faults;
   }
   if (!check_ring(polygon.outer, "outline", faults)) return faults;

@@ -13,6 +13,7 @@
 #include "runtime/run/log_faults.hpp"
 #include "runtime/run/log_match.hpp"
 #include "runtime/run/log_time.hpp"
+#include "runtime/run/output_check.hpp"
 #include "runtime/run/rejected_text.hpp"
 
 namespace zonepack {
@@ -217,7 +218,9 @@ std::string calibrated_yaml(const Calibration& calibration, const OdometrySettin
 }
 
 int run_calibrate(const CalibrateArguments& arguments) {
-  if (const auto done = calibrate_and_report(arguments); !done) {
+  auto done = check_outputs({{"--json", arguments.json, true}});
+  if (done) done = calibrate_and_report(arguments);
+  if (!done) {
     std::cerr << "zoned calibrate: " << done.error().message << '\n';
     return exit_code(done.error());
   }

@@ -153,7 +153,7 @@ Outcome<Calibration> calibrate(const std::vector<WheelStep>& steps, const TruthT
         static_cast<double>(window.steps.back().to_ns - window.steps.front().from_ns) * 1e-9;
   }
   if (result.distance_m < kLeastDistance_m || result.turned_rad < kLeastTurn_rad) {
-    return failure("the drive tells too little: " + metres(result.distance_m) + " m and " +
+    return failure("the drive is too short: " + metres(result.distance_m) + " m and " +
                    metres(result.turned_rad) +
                    " rad of turning that the truth covers; needed: at least " +
                    metres(kLeastDistance_m) + " m and " + metres(kLeastTurn_rad) +

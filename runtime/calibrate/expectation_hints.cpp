@@ -40,7 +40,8 @@ std::vector<WheelHint> expected_sides(const OdometrySettings& o, Kind kind,
         faults.swapped = true;
         return {swap_hint(o, faults,
                           "each went the other's way" + when +
-                              "; or both count backwards, which --expect forward tells")};
+                              "; or both count backwards: drive forward with --expect forward to "
+                              "find out")};
       }
       faults.left_sign = left * way > 0;
       faults.right_sign = !faults.left_sign;

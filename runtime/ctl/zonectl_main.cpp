@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// zonectl: asks and tells a running zoned. Wiring only; the commands live in runtime/ctl.
+// zonectl: queries and commands a running zoned. Wiring only; the commands live in runtime/ctl.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -146,7 +146,7 @@ void add_commands(CLI::App& app, Command& command, Words& words) {
 int main(int argc, char** argv) {
   outlive_file_limits();
   CLI::App app(
-      "Asks and tells a running zoned.\n"
+      "Queries and commands a running zoned.\n"
       "Exit codes: 0 done, 1 zoned or the world said no, 2 usage.",
       "zonectl");
   app.set_version_flag("--version", version_line("zonectl", {{"protocol", kProtocolVersion, {}}}));

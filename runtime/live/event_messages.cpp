@@ -76,7 +76,7 @@ EventMessages::Message EventMessages::message_of(const Event& event, const MapVe
     case EventKind::kPoseReinitialised:
       return {
           "the pose was moved: refused fixes agreed with each other on another place; look at "
-          "what tells the robot where it is",
+          "where the fixes come from",
           true};
     case EventKind::kCorrectionRejected:
       return {"fix refused: " + reason};

@@ -116,7 +116,7 @@ InputTimes times_of(const RunInputs& inputs) {
 Outcome<void> replay_log(const ReplayArguments& arguments) {
   if (arguments.start.kind == StartChoice::Kind::kFix && arguments.corrections.empty()) {
     note(
-        "warning: nothing ever tells where the robot is: give --corrections FILE, or --start "
+        "warning: nothing ever says where the robot is: give --corrections FILE, or --start "
         "X,Y,YAW_DEG or truth");
   }
   auto inputs = read_run_inputs(arguments);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "runtime/report/chart.hpp"
+#include "runtime/report/floor_plan_dots.hpp"
 #include "runtime/report/floor_plan_marks.hpp"
 #include "runtime/report/format.hpp"
 #include "runtime/report/legend.hpp"
@@ -71,9 +72,12 @@ std::vector<LegendItem> legend_of(const FloorPlan& plan) {
   if (!plan.route.empty()) {
     items.push_back({Mark::kThickLine, plan.route.front().color, "route, coloured by zone"});
   }
-  if (!plan.true_route.empty()) items.push_back({Mark::kDashedLine, kInk, "true route"});
+  if (!plan.true_route.empty()) {
+    items.push_back({Mark::kDashedLine, kInk, plan.true_route_name});
+  }
   if (!plan.portals.empty()) items.push_back({Mark::kThickLine, kDoor, "portal"});
   if (!plan.signatures.empty()) items.push_back({Mark::kDot, kQuiet, "signature"});
+  add_dot_legend(plan, items);
   add_mark_legend(plan, items);
   return items;
 }
@@ -194,12 +198,20 @@ void draw_routes(Svg& svg, const FloorPlan& plan, const PlanView& view) {
   svg.rect({end.x - 4, end.y - 4}, 8, 8, {.fill = kInk, .stroke = kWhite, .hint = "end"});
 }
 
-// What labels should not hide: the route, thinned to a few pixels, and the portals.
+// What labels should not hide: routes and dots, thinned to a few pixels, and the portals.
 std::vector<Px> points_to_keep(const FloorPlan& plan, const PlanView& view) {
   std::vector<Px> points;
   for (const PlanRoutePoint& point : plan.route) {
     const Px p = view(point.p_map);
     if (points.empty() || distance_px(points.back(), p) >= 4) points.push_back(p);
+  }
+  if (!plan.dots.empty()) {
+    for (const Point2& p : plan.true_route) {
+      if (points.empty() || distance_px(points.back(), view(p)) >= 4) points.push_back(view(p));
+    }
+  }
+  for (const PlanDots& layer : plan.dots) {
+    for (const PlanDot& dot : layer.dots) points.push_back(view(dot.p_map));
   }
   for (const Segment2& portal : plan.portals) {
     for (const double t : {0.0, 0.5, 1.0}) {
@@ -270,7 +282,8 @@ Svg draw_floor_plan(const FloorPlan& plan) {
   const std::vector<LegendItem> legend = legend_of(plan);
   const double plot_width = plan.width_px - kPlanLeft - kPlanRight;
   const double top = legend_height(plot_width, legend) + 8;
-  const PlanView view(area_of(plan), {kPlanLeft, top}, plot_width, kMostHeight);
+  const PlanView view(area_of(plan), {kPlanLeft, top}, plot_width, kMostHeight,
+                      plan.width_px <= kNarrowWidth_px);
 
   Svg svg(plan.width_px, top + view.height() + kPlanAxisBelow);
   draw_legend(svg, {kPlanLeft, 0}, plot_width, legend);
@@ -299,9 +312,12 @@ Svg draw_floor_plan(const FloorPlan& plan) {
   draw_routes(svg, plan, view);
   svg.close();
   draw_labels(svg, plan, view);
-  svg.open_clip(view.corner(), view.width(), view.height());
-  draw_marks(svg, plan, view);
-  svg.close();
+  if (!plan.dots.empty() || !plan.faults.empty() || !plan.orphans.empty()) {
+    svg.open_clip(view.corner(), view.width(), view.height());
+    draw_dots(svg, plan, view);
+    draw_marks(svg, plan, view);
+    svg.close();
+  }
   svg.set_data("plan", transform_of(view));
   return svg;
 }
@@ -316,5 +332,7 @@ std::string plan_json(const FloorPlan& plan) {
   for (const PlanZone& zone : plan.zones) names.push_back(zone.name);
   return "{\"kind\":\"plan\",\"zones\":" + script_strings(names) + "}";
 }
+
+std::string dots_json() { return "{\"kind\":\"dots\"}"; }
 
 }  // namespace zonepack::report

@@ -9,8 +9,8 @@
 #include "runtime/report/svg.hpp"
 
 // A map seen from above: zones, portals, signatures and routes in metres of the map frame, drawn to
-// one scale. A map much taller than wide is turned by a quarter (page right = +y, page down = +x);
-// the axes say so.
+// one scale. A map much taller than wide is turned by a quarter (page right = +y, page down = +x),
+// but not for a phone, which is itself taller than wide; the axes say so.
 namespace zonepack::report {
 
 struct PlanZone {
@@ -49,6 +49,21 @@ struct PlanRoutePoint {
   Color color;
 };
 
+// A place that was found at a moment of the run.
+struct PlanDot {
+  Point2 p_map;
+  double t_s = 0;    // since the start of the run
+  std::string hint;  // shown while the mouse is over it
+};
+
+// Places of one kind; the legend names the kind and counts them.
+struct PlanDots {
+  std::string name;
+  Color color;
+  bool ring = false;  // drawn around the dots of other layers instead of over them
+  std::vector<PlanDot> dots;
+};
+
 // What the colour of the zones means.
 struct PlanRamp {
   std::string low, high;
@@ -63,6 +78,8 @@ struct FloorPlan {
   std::vector<PlanOrphan> orphans;
   std::vector<PlanRoutePoint> route;  // as estimated, in order
   std::vector<Point2> true_route;     // empty when unknown
+  std::string true_route_name = "true route";
+  std::vector<PlanDots> dots;
   std::optional<PlanRamp> ramp;
   double width_px = 900;
 };
@@ -72,10 +89,11 @@ struct FloorPlan {
 // (x, y) of the map into (a x + c y + e, b x + d y + f) on the page.
 Svg draw_floor_plan(const FloorPlan& plan);
 
-// The same plan for a page as narrow as a phone's.
+// The same plan for a page as narrow as a phone's: never turned, as a phone is taller than wide.
 FloorPlan narrowed(FloorPlan plan);
 
-// What the page's script needs to name zones.
+// What the page's script needs: to name zones, and to name dots.
 std::string plan_json(const FloorPlan& plan);
+std::string dots_json();
 
 }  // namespace zonepack::report

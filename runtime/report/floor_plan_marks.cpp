@@ -88,7 +88,7 @@ void draw_raster(Svg& svg, const FloorPlan& plan, const PlanView& view) {
   const double width = (area.max.x_m - area.min.x_m) * view.px_per_m();
   const double height = (area.max.y_m - area.min.y_m) * view.px_per_m();
   const Point2 upper_left = view.turned() ? area.min : Point2{area.min.x_m, area.max.y_m};
-  svg.image(view(upper_left), width, height, view.turned(), plan.raster->png);
+  svg.image(view(upper_left), width, height, view.turned(), plan.raster->png, true);
 }
 
 void draw_marks(Svg& svg, const FloorPlan& plan, const PlanView& view) {

@@ -14,6 +14,9 @@ double mark_width(Mark mark) noexcept {
   switch (mark) {
     case Mark::kDot:
       return 8;
+    case Mark::kBigDot:
+    case Mark::kRing:
+      return 10;
     case Mark::kBlock:
       return 14;
     case Mark::kRamp:
@@ -38,6 +41,12 @@ void draw_mark(Svg& svg, Px left, const LegendItem& item) {
       break;
     case Mark::kDot:
       svg.circle({left.x + 4, left.y}, 2.5, {.fill = item.color});
+      break;
+    case Mark::kBigDot:
+      svg.circle({left.x + 5, left.y}, 4, {.fill = item.color});
+      break;
+    case Mark::kRing:
+      svg.circle({left.x + 5, left.y}, 4.5, {.stroke = item.color, .stroke_width = 1.5});
       break;
     case Mark::kBlock:
       svg.rect({left.x, left.y - 6}, width, 12, {.fill = item.color});

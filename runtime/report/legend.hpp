@@ -8,7 +8,7 @@
 
 namespace zonepack::report {
 
-enum class Mark { kLine, kThickLine, kDashedLine, kDot, kBlock, kRamp };
+enum class Mark { kLine, kThickLine, kDashedLine, kDot, kBigDot, kRing, kBlock, kRamp };
 
 struct LegendItem {
   Mark mark = Mark::kLine;

@@ -116,11 +116,11 @@ Report make_pack_report(const PackReport& map) {
       {"Floor plan",
        "The stronger the colour of a zone, the more bytes it takes while it is in memory. Dots are "
        "signatures, where the camera stood; orange bars are portals, where the robot goes from "
-       "zone "
-       "to zone." +
-           std::string(map.ground ? " Black is what the mapping robot saw as occupied, grey what "
-                                    "it did not see."
-                                  : ""),
+       "zone to zone." +
+           std::string(map.ground
+                           ? " Walls and furniture are what the mapping robot saw, the veil what "
+                             "it did not see."
+                           : ""),
        draw_floor_plan(plan), draw_floor_plan(narrowed(plan)), plan_json(plan)});
   page.tables.push_back(table_of(map));
   page.origin = map.source + (map.source.empty() ? "" : " ") + "Version " + map.version + ".";

@@ -11,11 +11,12 @@ constexpr double kLeastSide_m = 0.5;
 
 }  // namespace
 
-PlanView::PlanView(const Box2& area, Px corner, double width, double most_height) noexcept
+PlanView::PlanView(const Box2& area, Px corner, double width, double most_height,
+                   bool upright) noexcept
     : area_(area), corner_(corner) {
   const double east = std::max(area.max.x_m - area.min.x_m, kLeastSide_m);
   const double north = std::max(area.max.y_m - area.min.y_m, kLeastSide_m);
-  turned_ = north > kTurnAbove * east;
+  turned_ = !upright && north > kTurnAbove * east;
   const double across = turned_ ? north : east;
   const double down = turned_ ? east : north;
   px_per_m_ = std::min(width / across, most_height / down);

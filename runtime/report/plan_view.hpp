@@ -13,7 +13,9 @@ namespace zonepack::report {
 class PlanView {
  public:
   // Fits `area` into a box of this width and at most this height, with its upper left corner there.
-  PlanView(const Box2& area, Px corner, double width, double most_height) noexcept;
+  // Upright: without the quarter turn, for a page that is taller than wide.
+  PlanView(const Box2& area, Px corner, double width, double most_height,
+           bool upright = false) noexcept;
 
   Px operator()(Point2 p_map) const noexcept;
   std::vector<Px> operator()(const Ring& ring) const;

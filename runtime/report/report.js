@@ -125,6 +125,7 @@
   const figures = Array.from(document.querySelectorAll('figure'));
   const charts = [];
   let plan = null;
+  let dots = null;  // the plan whose dots are places found at moments
 
   function numbers(text) { return text.split(' ').map(Number); }
 
@@ -136,6 +137,8 @@
     const svgs = Array.from(figure.querySelectorAll('.drawing > svg'));
     if (about.kind === 'plan' && !plan) {
       plan = {figure: figure, values: values, svgs: svgs, zones: about.zones};
+    } else if (about.kind === 'dots') {
+      dots = {figure: figure, values: values, svgs: svgs, drawings: []};
     } else if (about.kind === 'chart') {
       charts.push({figure: figure, values: values, svgs: svgs, bytes: about.bytes, unit: about.unit,
         series: about.series.map(function (series) {
@@ -206,6 +209,47 @@
       });
     });
     nameZone(-1);
+  }
+
+  // ---- Dots: the one that is nearest to the pointer, or to a finger, is named.
+  function takeDots(svg) {
+    const drawing = {svg: svg, dots: Array.from(svg.querySelectorAll('[data-t]')).map(function (shape) {
+      return {shape: shape, x: Number(shape.getAttribute('cx')), y: Number(shape.getAttribute('cy')),
+        t: Number(shape.dataset.t)};
+    })};
+    drawing.ring = drawn('circle', {class: 'pointed', r: 8, visibility: 'hidden'});
+    svg.appendChild(drawing.ring);
+    drawing.nearest = function (event) {
+      const box = svg.getBoundingClientRect();
+      const scale = svg.viewBox.baseVal.width / box.width;
+      const x = (event.clientX - box.left) * scale, y = (event.clientY - box.top) * scale;
+      let best = null, least = 20 * scale;
+      drawing.dots.forEach(function (dot) {
+        const apart = Math.hypot(dot.x - x, dot.y - y);
+        if (apart < least) { best = dot; least = apart; }
+      });
+      return best;
+    };
+    svg.addEventListener('pointermove', function (event) { nameDot(drawing, drawing.nearest(event)); });
+    svg.addEventListener('pointerleave', function (event) {
+      if (event.pointerType === 'mouse') nameDot(drawing, null);
+    });
+    dots.drawings.push(drawing);
+  }
+
+  function nameDot(drawing, dot) {
+    const title = dot && dot.shape.querySelector('title');
+    dots.values.textContent = title ? title.textContent : 'Point at a dot to see what it is' +
+      (data.playback ? '; a press goes to its moment.' : '.');
+    drawing.ring.setAttribute('visibility', dot ? 'visible' : 'hidden');
+    if (!dot) return;
+    drawing.ring.setAttribute('cx', dot.x);
+    drawing.ring.setAttribute('cy', dot.y);
+  }
+
+  if (dots) {
+    dots.svgs.forEach(takeDots);
+    nameDot(dots.drawings[0], null);
   }
 
   if (!data.playback) return;
@@ -395,6 +439,13 @@
     own = zone;
   }
 
+  // Dots of moments that are still to come are faint.
+  function fadeDots(t) {
+    dots.drawings.forEach(function (drawing) {
+      drawing.dots.forEach(function (dot) { dot.shape.classList.toggle('future', t !== null && dot.t > t + 0.5); });
+    });
+  }
+
   // ---- The bar with the time.
   const bar = make('div', {class: 'bar', role: 'group', 'aria-label': 'Time of the run'});
   const play = make('button', {type: 'button', 'aria-label': 'Play the run', title: 'Play the run (space)'}, '▶ Play');
@@ -532,6 +583,7 @@
     place(0, now);
     moveRobots(now);
     shade(now);
+    if (dots) fadeDots(now);
     if (plan) {
       if (now === null) nameZone(chosen); else explainShades();
     }
@@ -617,6 +669,19 @@
   body.classList.add('playable');
   buildList();
   if (plan) plan.svgs.forEach(addRobot);
+  if (dots) {
+    dots.svgs.forEach(addRobot);
+    dots.drawings.forEach(function (drawing) {
+      drawing.svg.addEventListener('click', function (event) {
+        const dot = drawing.nearest(event);
+        if (!dot) return;
+        stop();
+        set(dot.t);
+        nameDot(drawing, dot);
+        remember();
+      });
+    });
+  }
   if (times.length) fillRows();
   if (!readAddress()) set(null);
 })();

@@ -60,6 +60,9 @@ void Svg::shape(std::string_view name, std::string_view attributes, const Style&
   }
   if (style.opacity < 1) body_ += attribute("opacity", style.opacity);
   if (style.zone) body_ += attribute("data-zone", std::to_string(*style.zone));
+  if (style.moment_s) {
+    body_ += attribute("data-t", std::to_string(std::llround(*style.moment_s * 1000)));
+  }
   if (style.hint.empty()) {
     body_ += "/>\n";
   } else {
@@ -126,9 +129,11 @@ void Svg::text(Px baseline, std::string_view text, const TextStyle& style) {
   body_.append(">").append(escape_xml(text)).append("</text>\n");
 }
 
-void Svg::image(Px corner, double width, double height, bool turned, std::string_view png) {
+void Svg::image(Px corner, double width, double height, bool turned, std::string_view png,
+                bool ground) {
   if (!is_finite(corner)) return;
   body_ += "<image";
+  if (ground) body_ += attribute("class", "ground");
   if (turned) {
     const std::string right = number(corner.x + height), down = number(corner.y);
     body_.append(" transform=\"matrix(0 1 -1 0 ")

@@ -28,6 +28,7 @@ struct Style {
   bool round = false;                    // line ends and joins
   std::string_view hint = {};            // shown while the mouse is over the shape
   std::optional<std::size_t> zone = {};  // the shape is this zone's ground: data-zone, for a script
+  std::optional<double> moment_s = {};   // of the run, when this was so: data-t, in milliseconds
 };
 
 enum class Anchor { kStart, kMiddle, kEnd };
@@ -62,7 +63,9 @@ class Svg {
   // A PNG file, held inside the drawing and stretched over the box that begins at `corner`. Turned:
   // its own right points down the page and its own up to the right, and `width` and `height` are
   // those of the picture before the turn.
-  void image(Px corner, double width, double height, bool turned, std::string_view png);
+  // `ground`: a picture in ink on a transparent page, whose lightness follows the page's.
+  void image(Px corner, double width, double height, bool turned, std::string_view png,
+             bool ground = false);
 
   // Until close(), clips everything to the box; coordinates stay those of the drawing.
   void open_clip(Px corner, double width, double height);

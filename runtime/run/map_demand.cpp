@@ -69,7 +69,7 @@ ResidencyLimits limits_for(const Catalog& catalog, std::optional<ByteCount> budg
 std::string smallest_budget_text(const Catalog& catalog, const std::vector<ZoneId>& pinned) {
   return "the smallest budget for this map" + std::string(pinned.empty() ? "" : " and its pins") +
          " is " + format_byte_count(catalog.smallest(pinned).bytes) +
-         " (zonepack plan tells what sets it)";
+         " (zonepack plan shows what sets it)";
 }
 
 Outcome<void> check_limits(const Catalog& catalog, const ResidencyLimits& limits,

@@ -11,7 +11,7 @@
 
 namespace zonepack {
 
-// The maps of a run: the one in use, and another while the map changes. Whoever works with one
+// The maps of a run: the one in use, and another while the map changes. Code that works with one
 // holds it; when the last holder of a removed one lets go, its memory is free.
 //
 // Threads: any.

@@ -186,7 +186,11 @@ Outcome<TruthTrack> read_truth(const std::string& path) {
     TruthTrack::Sample sample;
     if (!parse_stamp(words[0], sample.t_ns)) return not_a_stamp(words[0]);
     if (!samples.empty() && sample.t_ns < samples.back().t_ns) {
-      return failure("stamp " + std::string(words[0]) + " before the one on the line above");
+      return failure(
+          "stamp " + std::string(words[0]) +
+          " before the one on the line above; poses stand in order of "
+          "time: sort -n puts them so, and where the clock was set back on the way, give the part "
+          "after it as a drive of its own");
     }
     double v[7] = {};
     if (auto numbers = parse_numbers(words, 1, v); !numbers) return numbers;

@@ -29,7 +29,7 @@ Failure map_failure(const std::string& folder, const Error& error, const std::st
   return {error.code, folder + ": cannot be opened as a map: " + to_string(error.code) + " (" +
                           std::to_string(error.detail) +
                           "); it must hold manifest.zpm as written by zonepack build, and zonepack "
-                          "verify tells more"};
+                          "verify says more"};
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ namespace zonepack {
 namespace {
 
 constexpr double kNear_s = 1.0;
+constexpr double kFarthest_m = 1e6;
 
 bool read_number(std::string_view text, double& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -30,21 +31,28 @@ std::optional<Pose2> first_truth(const TruthTrack* truth, std::int64_t start_ns)
 
 }  // namespace
 
+std::optional<Pose2> parse_pose(std::string_view text) {
+  std::array<double, 3> numbers{};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const std::size_t comma = text.find(',');
+    const bool last = i + 1 == numbers.size();
+    if (last != (comma == std::string_view::npos)) return std::nullopt;
+    if (!read_number(text.substr(0, comma), numbers[i])) return std::nullopt;
+    if (!last) text.remove_prefix(comma + 1);
+  }
+  const double yaw_rad = numbers[2] * (kPi / 180);
+  if (std::abs(numbers[0]) > kFarthest_m || std::abs(numbers[1]) > kFarthest_m ||
+      std::abs(yaw_rad) > kLargestAngle_rad) {
+    return std::nullopt;
+  }
+  return Pose2{numbers[0], numbers[1], wrap_angle(yaw_rad)};
+}
+
 std::optional<StartChoice> parse_start(const std::string& text) {
   if (text == "fix") return StartChoice{StartChoice::Kind::kFix, {}};
   if (text == "truth") return StartChoice{StartChoice::Kind::kTruth, {}};
-  std::array<double, 3> numbers{};
-  std::string_view rest = text;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const std::size_t comma = rest.find(',');
-    const bool last = i + 1 == numbers.size();
-    if (last != (comma == std::string_view::npos)) return std::nullopt;
-    if (!read_number(rest.substr(0, comma), numbers[i])) return std::nullopt;
-    if (!last) rest.remove_prefix(comma + 1);
-  }
-  const double yaw_rad = numbers[2] * (kPi / 180);
-  if (std::abs(yaw_rad) > kLargestAngle_rad) return std::nullopt;
-  return StartChoice{StartChoice::Kind::kPose, {numbers[0], numbers[1], wrap_angle(yaw_rad)}};
+  const auto pose = parse_pose(text);
+  return pose ? std::optional(StartChoice{StartChoice::Kind::kPose, *pose}) : std::nullopt;
 }
 
 Outcome<std::optional<RunStart>> find_start(const StartChoice& choice, const TruthTrack* truth,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "platform/base/failure.hpp"
 #include "runtime/control/cycle.hpp"
@@ -18,6 +19,10 @@ struct StartChoice {
   Kind kind = Kind::kFix;
   Pose2 pose;
 };
+
+// "X,Y,YAW_DEG": metres within a thousand kilometres of the origin, degrees of at most a million
+// radians, which are wrapped; nothing for another text.
+std::optional<Pose2> parse_pose(std::string_view text);
 
 // "fix", "truth", or "X,Y,YAW" in metres and degrees; nothing for other texts.
 std::optional<StartChoice> parse_start(const std::string& text);

@@ -87,7 +87,7 @@ Outcome<const DbcSignal*> multiplexer_of(const DbcMessage& message, const DbcSig
   const auto root = std::find_if(all.begin(), all.end(), is_root);
   if (root == all.end()) return failure("no signal of its message is the multiplexer (M)");
   if (std::find_if(root + 1, all.end(), is_root) != all.end()) {
-    return failure("its message has several multiplexers; expected SG_MUL_VAL_ to tell which one");
+    return failure("its message has several multiplexers; expected SG_MUL_VAL_ to say which one");
   }
   return &*root;
 }

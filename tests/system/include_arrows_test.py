@@ -52,7 +52,7 @@ ARROWS = {
     "runtime/listen": "platform platform/base platform/sim runtime/calibrate runtime/live runtime/odometry runtime/run"
                       " runtime/settings",
     "runtime/localize/replay": "platform platform/base runtime/client runtime/localize/camera runtime/localize/query"
-                               " runtime/odometry runtime/replay runtime/run",
+                               " runtime/odometry runtime/replay runtime/report runtime/run",
     "runtime/zoned": "platform platform/command_line platform/version runtime/calibrate runtime/listen runtime/live"
                      " runtime/pack_format/file"
                      " runtime/recording runtime/replay runtime/report",
@@ -71,7 +71,7 @@ ARROWS = {
     "runtime/localize/run": "platform platform/base runtime/client runtime/localize/camera"
                             " runtime/localize/query runtime/odometry runtime/protocol runtime/run runtime/settings",
     "runtime/localize/zoneloc": "platform platform/command_line platform/version runtime/localize/explain"
-                                " runtime/localize/replay runtime/localize/run runtime/protocol runtime/report",
+                                " runtime/localize/replay runtime/localize/run runtime/protocol runtime/report runtime/run",
 
     "packer/record": "",
     "packer/sources": "packer/record platform/base",

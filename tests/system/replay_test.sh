@@ -86,7 +86,7 @@ exits 2 "$bin/zoned"
 exits 2 "$bin/zoned" wander
 says wander
 exits 0 "$bin/zoned" replay --config "$config" --map map --can "$can"
-says "nothing ever tells where the robot is"
+says "nothing ever says where the robot is"
 says "first zone resident *never"
 { echo "nonsense"; head -2000 "$run/can0.log"; } >broken.log
 can=broken.log exits 0 replay map --json broken.json

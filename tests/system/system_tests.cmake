@@ -41,6 +41,11 @@ if(TARGET zonepack AND TARGET zoned AND TARGET zonectl AND TARGET zoneloc)
   add_test(NAME system/localizer_run
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/localize/run_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
+  zonepack_test_program(localize/double_image.cpp zonepack_localize)
+  add_test(NAME system/localizer_replay
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/localize/replay_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR} $<TARGET_FILE:double_image>)
+  set_tests_properties(system/localizer_replay PROPERTIES TIMEOUT 600)
   add_test(NAME system/version
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/version_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR} ${PROJECT_VERSION})

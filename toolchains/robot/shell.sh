@@ -18,7 +18,7 @@ cat <<TEXT
 
 A robot drives through the sample hospital, two minutes, again and again.
   zonectl watch        what is in memory while it drives
-  zonectl --help       what else can be asked and told
+  zonectl --help       all commands
   candump vcan0        its wheels on the bus
   cat /tmp/zoned.log   what zoned said
   exit                 switch the robot off

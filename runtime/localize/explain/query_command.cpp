@@ -209,22 +209,6 @@ Outcome<void> query(const QueryArguments& arguments) {
 
 }  // namespace
 
-std::optional<Pose2> parse_near(const std::string& text) {
-  double values[3];
-  std::string_view rest = text;
-  for (int i = 0; i < 3; ++i) {
-    const std::string_view word = rest.substr(0, i < 2 ? rest.find(',') : rest.size());
-    if (i < 2 && word.size() == rest.size()) return std::nullopt;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), values[i]);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(values[i])) {
-      return std::nullopt;
-    }
-    rest.remove_prefix(i < 2 ? word.size() + 1 : word.size());
-  }
-  if (std::abs(values[0]) > 1e6 || std::abs(values[1]) > 1e6) return std::nullopt;
-  return Pose2{values[0], values[1], std::remainder(values[2] * kDegree, 2 * std::numbers::pi)};
-}
-
 int run_query(const QueryArguments& arguments) {
   const auto done = query(arguments);
   return done ? 0 : report_failure("zoneloc", done.error());

@@ -21,9 +21,6 @@ struct QueryArguments {
   std::string draw, json;
 };
 
-// "X,Y,YAW_DEG"; nothing for another text.
-std::optional<Pose2> parse_near(const std::string& text);
-
 // Finds one image's pose in a map, prints it and why there is none, and returns the exit code: 0
 // also where there is none.
 int run_query(const QueryArguments& arguments);

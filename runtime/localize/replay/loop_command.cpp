@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <utility>
 
@@ -16,9 +17,11 @@
 #include "runtime/localize/check/calibration_watch.hpp"
 #include "runtime/localize/query/localizer.hpp"
 #include "runtime/localize/query/map_folder.hpp"
+#include "runtime/localize/replay/beside_run.hpp"
 #include "runtime/localize/replay/camera_loop.hpp"
 #include "runtime/localize/replay/fixes_file.hpp"
 #include "runtime/localize/replay/loop_figures.hpp"
+#include "runtime/localize/replay/loop_report.hpp"
 #include "runtime/localize/replay/map_error.hpp"
 #include "runtime/replay/replay.hpp"
 #include "runtime/run/baseline.hpp"
@@ -62,7 +65,12 @@ struct LoopInputs {
   CameraModel camera;
   std::vector<LoopImage> images;
   std::vector<BaselineRow> baseline;
+  std::optional<BesideRun> beside;
 };
+
+std::string size_text(int width, int height) {
+  return std::to_string(width) + "x" + std::to_string(height);
+}
 
 // Fails when the list's first image is not of the calibration's size: then none is.
 Outcome<void> check_size(const std::vector<ListedImage>& images, const LoopArguments& arguments,
@@ -70,12 +78,9 @@ Outcome<void> check_size(const std::vector<ListedImage>& images, const LoopArgum
   const auto image = read_image(images.front().file);
   if (!image) return {};  // refused by name when its time comes
   if (image->width == camera.width && image->height == camera.height) return {};
-  const auto size = [](int width, int height) {
-    return std::to_string(width) + "x" + std::to_string(height);
-  };
-  return failure(images.front().file + ": is " + size(image->width, image->height) + ", but " +
-                 arguments.calibration + " is for images of " + size(camera.width, camera.height) +
-                 "; give the calibration of this camera");
+  return failure(images.front().file + ": is " + size_text(image->width, image->height) + ", but " +
+                 arguments.calibration + " is for images of " +
+                 size_text(camera.width, camera.height) + "; give the calibration of this camera");
 }
 
 Outcome<LoopInputs> read_inputs(const LoopArguments& arguments) {
@@ -100,27 +105,60 @@ Outcome<LoopInputs> read_inputs(const LoopArguments& arguments) {
     if (!rows) return rows.error();
     baseline = std::move(*rows);
   }
+  std::optional<BesideRun> beside;
+  if (!arguments.beside.empty()) {
+    auto other = read_beside(arguments.beside);
+    if (!other) return other.error();
+    beside = std::move(*other);
+  }
   const LogTime time = LogTime::read(arguments.can, run->settings.can.interface);
   if (run->truth) run->truth = time.on_first_clock(*run->truth);
+  if (beside) {
+    for (BesideRun::Fix& fix : beside->fixes) fix.stamp_ns = time.on_first_clock(fix.stamp_ns);
+  }
   std::vector<LoopImage> images;
   for (ListedImage& image : *listed) {
     images.push_back({time.on_first_clock(image.stamp_ns), image.stamp_ns, std::move(image.file)});
   }
   std::stable_sort(images.begin(), images.end(),
                    [](const LoopImage& a, const LoopImage& b) { return a.stamp_ns < b.stamp_ns; });
-  return LoopInputs{std::move(*run), std::move(*map), *camera, std::move(images),
-                    std::move(baseline)};
+  return LoopInputs{std::move(*run),   std::move(*map),     *camera,
+                    std::move(images), std::move(baseline), std::move(beside)};
 }
 
-ImageFinder finder(Localizer& localizer) {
-  return [&localizer](const LoopImage& image, std::span<const MapFeatures* const> map,
-                      const QueryPrior& prior) -> Outcome<QueryResult> {
+// Reads the images and looks at them. A camera that hangs gives the same image over and over: no
+// camera's noise is the same twice, so a repetition is refused as `zoneloc run` refuses it.
+class Finder {
+ public:
+  Finder(Localizer& localizer, const CameraModel& camera)
+      : localizer_(localizer), camera_(camera) {}
+
+  Outcome<QueryResult> operator()(const LoopImage& image, std::span<const MapFeatures* const> map,
+                                  const QueryPrior& prior) {
     auto pixels = read_image(image.file);
     if (!pixels) return pixels.error();
-    pixels->stamp_ns = image.stamp_ns;
-    return localizer.query(*pixels, map, prior);
-  };
-}
+    if (!last_.pixels.empty() && pixels->width == last_.width && pixels->height == last_.height &&
+        pixels->pixels == last_.pixels) {
+      return failure(image.file +
+                     ": repeats the image before bit for bit: the camera hangs; "
+                     "nothing is sent for it");
+    }
+    last_ = std::move(*pixels);
+    last_.stamp_ns = image.stamp_ns;
+    if ((last_.width != camera_.width || last_.height != camera_.height) && ++wrong_size_ <= 5) {
+      note("warning: " + image.file + ": is " + size_text(last_.width, last_.height) +
+           ", but the calibration is for images of " + size_text(camera_.width, camera_.height) +
+           "; nothing is sent for it");
+    }
+    return localizer_.query(last_, map, prior);
+  }
+
+ private:
+  Localizer& localizer_;
+  const CameraModel& camera_;
+  GreyImage last_;
+  std::size_t wrong_size_ = 0;
+};
 
 Outcome<void> write_figures(const LoopFigures& figures, const LoopArguments& arguments) {
   Failures failed;
@@ -131,6 +169,25 @@ Outcome<void> write_figures(const LoopFigures& figures, const LoopArguments& arg
   if (!json_on_output && !arguments.json.empty()) {
     const auto written = write_file_atomically(arguments.json, figures_json(figures));
     if (!written) failed.add(cannot_write(arguments.json, written.error()));
+  }
+  return failed.all();
+}
+
+Outcome<void> draw(const LoopArguments& arguments, const LoopInputs& inputs,
+                   const ReplayResult& result, const CameraLoop& loop, const LoopFigures& figures) {
+  const RunReportInput run{inputs.run.catalog.folder, arguments.can, result.summary, result.trace,
+                           inputs.baseline};
+  const LoopReportInput input{.run = run,
+                              .loop = loop,
+                              .figures = figures,
+                              .truth = inputs.run.truth ? &*inputs.run.truth : nullptr,
+                              .beside = inputs.beside ? &*inputs.beside : nullptr};
+  Failures failed;
+  if (!arguments.report.empty()) {
+    failed.add(report::write_report(arguments.report, make_loop_report(input)));
+  }
+  if (!arguments.picture.empty()) {
+    failed.add(report::write_report(arguments.picture, make_loop_picture(input)));
   }
   return failed.all();
 }
@@ -154,7 +211,8 @@ Outcome<void> drive(const LoopArguments& arguments, const CameraTraits& camera_i
   }
   LogMatch frames(log);
   Localizer localizer(inputs->camera, inputs->map.detector);
-  CameraLoop loop(inputs->images, finder(localizer),
+  Finder finder(localizer, inputs->camera);
+  CameraLoop loop(inputs->images, std::ref(finder),
                   {.latency_ns = std::llround(arguments.latency_s * 1e9),
                    .descriptor_bytes = inputs->map.detector.descriptor_bytes()});
   loop.on_progress(Progress());
@@ -207,11 +265,11 @@ Outcome<void> drive(const LoopArguments& arguments, const CameraTraits& camera_i
   failed.add(result->events_written);
   if (!arguments.fixes.empty()) failed.add(write_fixes(arguments.fixes, loop.views()));
   failed.add(write_figures(figures, arguments));
-  if (!arguments.report.empty()) {
-    const RunReportInput run{inputs->run.catalog.folder, arguments.can, result->summary,
-                             result->trace, inputs->baseline};
-    failed.add(report::write_report(arguments.report, make_run_report(run)));
+  if (inputs->beside && !inputs->beside->fixes.empty()) {
+    failed.add(check_overlap(arguments.beside, inputs->beside->fixes.front().stamp_ns,
+                             inputs->beside->fixes.back().stamp_ns, arguments.can, frames));
   }
+  failed.add(draw(arguments, *inputs, *result, loop, figures));
   failed.add(check_limits(result->summary));
   return failed.all();
 }
@@ -232,7 +290,8 @@ int run_loop(const LoopArguments& arguments) {
   auto done = check_outputs({{"--events", arguments.events, true},
                              {"--json", arguments.json, true},
                              {"--fixes", arguments.fixes},
-                             {"--report", arguments.report}});
+                             {"--report", arguments.report},
+                             {"--picture", arguments.picture}});
   if (done) done = drive(arguments);
   return done ? 0 : report_failure(kProgram, done.error());
 }

@@ -17,6 +17,8 @@ struct LoopArguments : RunChoices {
   std::string calibration;  // of the camera
   double latency_s = 0.15;  // from an image's stamp to its fix
   std::string fixes, events, json, report;
+  std::string picture;   // the plan of the fixes alone
+  std::string beside;    // another localizer's fixes, for report and picture
   std::string baseline;  // RTAB-Map's own run, for the report
 };
 

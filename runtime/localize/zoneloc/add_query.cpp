@@ -2,6 +2,7 @@
 #include "runtime/localize/zoneloc/add_query.hpp"
 
 #include "platform/command_line/command_line.hpp"
+#include "runtime/run/run_start.hpp"
 
 namespace zonepack::localize {
 
@@ -20,7 +21,7 @@ void add_query(CLI::App& app, QueryArguments& arguments, std::function<int()>& c
           .add_option_function<std::string>(
               "--near",
               [&arguments](const std::string& text) {
-                arguments.place.near = parse_near(text);
+                arguments.place.near = parse_pose(text);
                 if (!arguments.place.near) {
                   throw CLI::ValidationError(
                       "--near", "'" + text + "' is not X,Y,YAW_DEG in metres and degrees");

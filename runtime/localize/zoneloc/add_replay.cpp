@@ -71,9 +71,17 @@ void add_replay(CLI::App& app, LoopArguments& arguments, std::function<int()>& c
   add_file(replay, "--events", arguments.events,
            "write the event log, one JSON object a line ('-': standard output)");
   add_file(replay, "--json", arguments.json, "write the figures as JSON ('-': standard output)");
-  add_file(replay, "--report", arguments.report, "draw the run with its fixes: .html, .svg or .png")
-      ->check(
-          [](const std::string& path) { return report::check_report_name(path).error().message; });
+  const auto drawing = [&replay](const char* name, std::string& file, const char* what) {
+    add_file(replay, name, file, what)->check([](const std::string& path) {
+      const auto good = report::check_report_name(path);
+      return good ? std::string() : good.error().message;
+    });
+  };
+  drawing("--report", arguments.report, "draw the run with its fixes");
+  drawing("--picture", arguments.picture, "draw only the plan with the fixes");
+  add_file(replay, "--beside", arguments.beside,
+           "another localizer's fixes of the same drive, to draw around ours: RTAB-Map's run (CSV "
+           "with t, accepted, mx, my, myaw) or poses as TUM's");
   add_file(replay, "--baseline", arguments.baseline,
            "RTAB-Map's own run of the same images (CSV), to draw next to ours");
   add_examples(replay,

@@ -22,9 +22,20 @@ TEST(ParseStart, TakesFixTruthOrAPoseInDegrees) {
   EXPECT_NEAR(pose->pose.yaw_rad, -kPi / 2, 1e-12);
 }
 
+TEST(ParseStart, TakesAPoseWithoutAWordAsOthersDo) {
+  const auto pose = parse_pose("1.5,-2,90");
+  ASSERT_TRUE(pose);
+  EXPECT_EQ(pose->x_m, 1.5);
+  EXPECT_EQ(pose->y_m, -2);
+  EXPECT_NEAR(pose->yaw_rad, kPi / 2, 1e-12);
+  for (const char* text : {"truth", "fix", "1,2,", "a,2,3", "1000001,0,0"}) {
+    EXPECT_FALSE(parse_pose(text)) << text;
+  }
+}
+
 TEST(ParseStart, RefusesAnythingElse) {
   for (const char* text : {"", "fix ", "1,2", "1,2,3,4", "1,,3", "1,2,x", "nan,0,0", "1,2,inf",
-                           "0,0,1e300", "1;2;3"}) {
+                           "0,0,1e300", "1e7,0,0", "0,-1e7,0", "1;2;3"}) {
     EXPECT_FALSE(parse_start(text)) << text;
   }
 }

@@ -58,7 +58,7 @@ TEST_F(BaselineTest, NamesFileLineAndWhatWasExpected) {
   const std::string head = "t,wm,cum_removed,cum_retrieved\n";
   EXPECT_EQ(problem_of("t,wm,cum_removed\n"),
             path_ +
-                ":1: no column 'cum_retrieved'; a baseline needs the columns t, wm, cum_removed, "
+                ":1: no column 'cum_retrieved'; expected the columns t, wm, cum_removed, "
                 "cum_retrieved");
   EXPECT_EQ(problem_of(head + "1,2,3\n"), path_ + ":2: 3 cells where the column names have 4");
   EXPECT_EQ(problem_of(head + "1,2,3,4\n1,2,three,4\n"),

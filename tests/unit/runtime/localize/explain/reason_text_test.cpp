@@ -45,16 +45,5 @@ TEST(ReasonText, SaysSomethingForEveryReason) {
   }
 }
 
-TEST(ParseNear, TakesMetresAndDegrees) {
-  const auto pose = parse_near("1.5,-2,90");
-  ASSERT_TRUE(pose.has_value());
-  EXPECT_EQ(pose->x_m, 1.5);
-  EXPECT_EQ(pose->y_m, -2);
-  EXPECT_NEAR(pose->yaw_rad, 1.5707963, 1e-6);
-  for (const char* text : {"", "1,2", "1,2,", "1,2,3,4", "a,2,3", "nan,1,2", "1e9,0,0"}) {
-    EXPECT_FALSE(parse_near(text).has_value()) << text;
-  }
-}
-
 }  // namespace
 }  // namespace zonepack::localize
