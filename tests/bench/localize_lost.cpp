@@ -119,11 +119,12 @@ class RememberingMatcher final : public PlaceMatcher {
 // The path by the wheels alone, at each stamp.
 std::vector<Pose2> by_wheels(const std::string& log_file, const std::string& config,
                              const std::vector<ListedImage>& images) {
-  const auto settings = Settings::load(config);
-  if (!settings) stop(settings.error().message);
-  CanLogReader log(log_file, settings->can.interface);
+  const auto loaded = load_usable_settings(config);
+  if (!loaded) stop(loaded.error().message);
+  const zonepack::Settings& settings = loaded->settings;
+  CanLogReader log(log_file, settings.can.interface);
   if (const auto opened = log.open(); !opened) stop(log.explain(opened.error()));
-  WheelOdometry odometry(settings->odometry.wheels);
+  WheelOdometry odometry(settings.odometry.wheels);
   std::vector<Pose2> out;
   Pose2 now;
   while (const auto frame = log.next()) {
