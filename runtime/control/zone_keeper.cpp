@@ -69,13 +69,13 @@ void ZoneKeeper::fail(ZoneId zone, ErrorCode code, std::int64_t now_ns) noexcept
   emit(EventKind::kLoadFailed, zone, to_string(code));
 }
 
-void ZoneKeeper::keep(std::int64_t now_ns, std::span<const ZoneId> wanted,
-                      std::size_t urgent) noexcept {
+void ZoneKeeper::keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent,
+                      bool with_own) noexcept {
   ZP_REQUIRE(wanted.size() <= kMaxWanted);
   drop_unwanted(wanted);
   does_not_fit_ = kNoZone;
   for (std::size_t place = 0; place < wanted.size(); ++place) {
-    see_to(place, wanted, place < urgent, now_ns);
+    see_to(place, wanted, place < urgent, place == 0 && with_own, now_ns);
   }
   keep_pinned(now_ns);
   set_blocked(does_not_fit_);
@@ -101,10 +101,9 @@ void ZoneKeeper::drop_unwanted(std::span<const ZoneId> wanted) noexcept {
   if (loading_ != kNoZone && !wants(wanted, loading_) && !memory_.pinned(loading_)) cancel_load();
 }
 
-void ZoneKeeper::see_to(std::size_t place, std::span<const ZoneId> wanted, bool urgent,
+void ZoneKeeper::see_to(std::size_t place, std::span<const ZoneId> wanted, bool urgent, bool own,
                         std::int64_t now_ns) noexcept {
   const ZoneId zone = wanted[place];
-  const bool own = place == 0;
   memory_.protect(zone);
   if (memory_.state(zone) != ZoneState::kAbsent || !may_start(zone, own, now_ns)) return;
   const Purpose purpose = own ? Purpose::kOwnZone : Purpose::kApproach;

@@ -51,8 +51,9 @@ class ZoneKeeper {
   void unpin(ZoneId zone) noexcept;
 
   // Takes what is wanted in this cycle, most urgent first, no zone twice, at most kMaxWanted. The
-  // first is the robot's own zone; those after the first `urgent` are only possible.
-  void keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent) noexcept;
+  // first is the robot's own zone, if with_own; those after the first `urgent` are only possible.
+  void keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent,
+            bool with_own = true) noexcept;
 
   // While held, no load starts; one under way finishes.
   void hold(bool held) noexcept { held_ = held; }
@@ -79,7 +80,7 @@ class ZoneKeeper {
 
   bool wants(std::span<const ZoneId> list, ZoneId zone) const noexcept;
   void drop_unwanted(std::span<const ZoneId> wanted) noexcept;
-  void see_to(std::size_t place, std::span<const ZoneId> wanted, bool urgent,
+  void see_to(std::size_t place, std::span<const ZoneId> wanted, bool urgent, bool own,
               std::int64_t now_ns) noexcept;
   bool may_start(ZoneId zone, bool own, std::int64_t now_ns) noexcept;
   void keep_pinned(std::int64_t now_ns) noexcept;

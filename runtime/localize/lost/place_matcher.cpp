@@ -45,8 +45,9 @@ std::vector<Sight> ImageMatcher::guess(const LostView& view, ZoneId,
     ransac.seed = localizer_.options().seed;
     ransac.iterations = kGuessTries;
     ransac.threshold_px *= scale;
-    const auto found = find_planar(sightings, camera, one->T_map_base.translation().z(),
-                                   {flatten(one->T_map_base), kGuessReach_m, kGuessReach_rad}, ransac);
+    const auto found =
+        find_planar(sightings, camera, one->T_map_base.translation().z(),
+                    {flatten(one->T_map_base), kGuessReach_m, kGuessReach_rad}, ransac);
     if (!found.empty() && found.front().features >= kLeastPlanar) places.push_back(found.front());
   }
   std::stable_sort(places.begin(), places.end(),

@@ -41,6 +41,7 @@ struct LoopFigures {
   std::optional<std::size_t> found_after_views;
   std::optional<double> found_after_s;
   std::map<std::string, std::size_t> reasons;
+  LostLoop::Figures lost;
   RunSummary run;
 };
 
