@@ -7,7 +7,8 @@
 // start), cut=1 (zones that have a signature in view of one of the start's views are taken out of
 // the map: nothing may be found), list=1 (a line for each start), cache=FILE (keeps what was
 // matched, for the next run with the same map and mission), and the rule's least_distinct=,
-// least_explained=, least_support=, least_views=, most_rival=, most_against=, should_see=.
+// least_explained=, least_support=, least_views=, two_views_support=,
+// most_rival=, most_against=, should_see=.
 //
 // Prints the share of starts found within 5, 10 and `most` views, wrong ones (over 0.5 m or 10
 // degrees off the truth), and thread-CPU time of a view against the whole map.
@@ -163,6 +164,8 @@ int main(int argc, char** argv) {
       rule.least_support = static_cast<int>(value);
     else if (key == "least_views")
       rule.least_views = static_cast<std::size_t>(value);
+    else if (key == "two_views_support")
+      rule.two_views_support = static_cast<int>(value);
     else if (key == "most_rival")
       rule.most_rival = value;
     else if (key == "most_against")
@@ -218,7 +221,7 @@ int main(int argc, char** argv) {
   }
 
   const auto most = static_cast<std::size_t>(number("most"));
-  std::size_t starts = 0, wrong = 0;
+  std::size_t starts = 0, wrong = 0, most_wrong_support = 0;
   std::vector<std::size_t> found_after;
   for (std::size_t start = 0; start < views.size();
        start += static_cast<std::size_t>(number("every"))) {
@@ -251,6 +254,9 @@ int main(int argc, char** argv) {
         is_wrong = off_m > 0.5 || off_deg > 10;
       }
     }
+    if (is_wrong && place->views.size() > 1) {
+      most_wrong_support = std::max(most_wrong_support, static_cast<std::size_t>(place->support));
+    }
     if (after > 0) {
       found_after.push_back(after);
       wrong += is_wrong ? 1 : 0;
@@ -281,10 +287,12 @@ int main(int argc, char** argv) {
     return count == 0 ? 0 : static_cast<double>(ns) / 1e6 / static_cast<double>(count);
   };
   std::printf(
-      "%-20s%s starts %zu found within 5 %.3f 10 %.3f %zu %.3f wrong %zu  ms of a view and a zone "
+      "%-20s%s starts %zu found within 5 %.3f 10 %.3f %zu %.3f wrong %zu, most support of a wrong "
+      "place %zu  ms of a view and a zone "
       "%.2f, of a second look %.2f (%zu, %zu)\n",
       mission.substr(mission.rfind('/') + 1).c_str(), number("cut") != 0 ? " cut" : "", starts,
-      within(5), within(10), most, within(most), wrong, mean_ms(matcher.guess_ns, matcher.guesses),
-      mean_ms(matcher.check_ns, matcher.checks), matcher.guesses, matcher.checks);
+      within(5), within(10), most, within(most), wrong, most_wrong_support,
+      mean_ms(matcher.guess_ns, matcher.guesses), mean_ms(matcher.check_ns, matcher.checks),
+      matcher.guesses, matcher.checks);
   return 0;
 }

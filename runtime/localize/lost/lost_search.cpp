@@ -226,8 +226,11 @@ std::optional<LostPlace> LostSearch::leading() const {
 }
 
 bool LostSearch::found(const LostPlace& place) const noexcept {
-  return place.views.size() >= rule_.least_views && place.support >= rule_.least_support &&
-         (place.moved_m >= rule_.moved_m || place.turned_rad >= rule_.turned_rad) &&
+  const bool enough = place.views.size() >= rule_.least_views
+                          ? place.support >= rule_.least_support
+                          : place.views.size() == 2 && place.moved_m >= rule_.moved_m &&
+                                place.support >= rule_.two_views_support;
+  return enough && (place.moved_m >= rule_.moved_m || place.turned_rad >= rule_.turned_rad) &&
          place.rival <= rule_.most_rival * place.support &&
          place.against <= rule_.most_against * static_cast<double>(place.views.size());
 }

@@ -17,14 +17,17 @@ namespace zonepack::localize {
 struct LostRule {
   int least_distinct = 14;       // of a view that counts
   double least_explained = .12;  // distinct / visible, of a view that counts
-  int least_support = 60;
-  std::size_t least_views = 2;
+  int least_support = 50;
+  std::size_t least_views = 3;
+  // Two views are enough when they show this much, from places that are moved_m apart: a robot that
+  // only turns may see the same pattern of a floor twice, in a wrong place.
+  int two_views_support = 90;
   double moved_m = 0.3, turned_rad = 0.26;  // between two of the views, one of these
   double most_rival = 0.6;                  // of the support
   // A view that should see the map there: this many of its features are near projected points, and
   // a smaller part than least_explained agrees.
   int should_see = 60;
-  double most_against = 0.5;  // views against, of those for
+  double most_against = 1;  // views against, of those for
 };
 
 // A place that a search believes or leans to.

@@ -12,12 +12,12 @@ namespace {
 
 Point2 middle_of(const Polygon& polygon) {
   Point2 sum{};
-  for (const Point2& point : polygon) {
-    sum.x += point.x;
-    sum.y += point.y;
+  for (const Point2& point : polygon.outer) {
+    sum.x_m += point.x_m;
+    sum.y_m += point.y_m;
   }
-  const double count = std::max<double>(1, static_cast<double>(polygon.size()));
-  return {sum.x / count, sum.y / count};
+  const double count = std::max<double>(1, static_cast<double>(polygon.outer.size()));
+  return {sum.x_m / count, sum.y_m / count};
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ std::vector<ZoneId> search_order(const Catalog& map, ZoneId last) {
   std::vector<ZoneId> order(count);
   for (ZoneId zone = 0; zone < count; ++zone) {
     const Point2 middle = middle_of(map.zones[zone].polygon);
-    away[zone] = std::hypot(middle.x - start.x, middle.y - start.y);
+    away[zone] = std::hypot(middle.x_m - start.x_m, middle.y_m - start.y_m);
     order[zone] = zone;
   }
   std::stable_sort(order.begin(), order.end(), [&](ZoneId a, ZoneId b) {
