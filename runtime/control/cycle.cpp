@@ -256,7 +256,7 @@ void Cycle::follow_zones(ZoneId before) noexcept {
   if (tracker_.zone() != before) {
     state_.zone = tracker_.zone();
     emit(EventKind::kZoneEntered, state_.zone);
-    if (before != kNoZone) {
+    if (before != kNoZone && state_.zone != kNoZone) {
       ++state_.zone_switches;
       if (!memory_.resident(state_.zone)) emit(EventKind::kNotKeepingUp, state_.zone);
     }

@@ -8,7 +8,7 @@
 // the map: nothing may be found), list=1 (a line for each start), cache=FILE (keeps what was
 // matched, for the next run with the same map and mission), and the rule's least_distinct=,
 // least_explained=, least_support=, least_views=, two_views_support=,
-// most_rival=, most_against=, should_see=.
+// most_rival=, against_costs=, chance=, should_see=.
 //
 // Prints the share of starts found within 5, 10 and `most` views, wrong ones (over 0.5 m or 10
 // degrees off the truth), and thread-CPU time of a view against the whole map.
@@ -161,15 +161,17 @@ int main(int argc, char** argv) {
     else if (key == "least_explained")
       rule.least_explained = value;
     else if (key == "least_support")
-      rule.least_support = static_cast<int>(value);
+      rule.least_support = value;
     else if (key == "least_views")
       rule.least_views = static_cast<std::size_t>(value);
     else if (key == "two_views_support")
-      rule.two_views_support = static_cast<int>(value);
+      rule.two_views_support = value;
     else if (key == "most_rival")
       rule.most_rival = value;
-    else if (key == "most_against")
-      rule.most_against = value;
+    else if (key == "against_costs")
+      rule.against_costs = value;
+    else if (key == "chance")
+      rule.chance = value;
     else if (key == "should_see")
       rule.should_see = static_cast<int>(value);
     else if (options.contains(key))
@@ -221,7 +223,8 @@ int main(int argc, char** argv) {
   }
 
   const auto most = static_cast<std::size_t>(number("most"));
-  std::size_t starts = 0, wrong = 0, most_wrong_support = 0;
+  std::size_t starts = 0, wrong = 0;
+  double most_wrong_support = 0;
   std::vector<std::size_t> found_after;
   for (std::size_t start = 0; start < views.size();
        start += static_cast<std::size_t>(number("every"))) {
@@ -255,7 +258,7 @@ int main(int argc, char** argv) {
       }
     }
     if (is_wrong && place->views.size() > 1) {
-      most_wrong_support = std::max(most_wrong_support, static_cast<std::size_t>(place->support));
+      most_wrong_support = std::max(most_wrong_support, place->support);
     }
     if (after > 0) {
       found_after.push_back(after);
@@ -266,7 +269,8 @@ int main(int argc, char** argv) {
                   after, end - start);
       if (place) {
         std::printf(
-            ", support %d of %zu views, against %d, rival %d, moved %.2f m, turned %.0f deg, off "
+            ", support %.0f of %zu views, against %d, rival %.0f, moved %.2f m, turned %.0f deg, "
+            "off "
             "%.2f m %.1f deg:",
             place->support, place->views.size(), place->against, place->rival, place->moved_m,
             place->turned_rad * 180 / std::numbers::pi, off_m, off_deg);

@@ -98,6 +98,10 @@ bool LostSearch::counts(const Sight& sight) const noexcept {
          sight.distinct >= rule_.least_explained * sight.visible;
 }
 
+double LostSearch::evidence(const Sight& sight) const noexcept {
+  return std::max(0.0, sight.distinct - rule_.chance * sight.visible);
+}
+
 Pose2 LostSearch::carried(const Seen& from, std::size_t to) const noexcept {
   return compose(from.T_map_wheels, views_[to].T_wheels_base);
 }
@@ -133,7 +137,7 @@ LostSearch::Cluster LostSearch::around(const Seen& centre, bool all) const {
   for (const Seen* const seen : chosen) {
     place.views.push_back(seen->view);
     place.sights.push_back(seen->sight);
-    place.support += seen->sight.distinct;
+    place.evidence += evidence(seen->sight);
     if (std::find(out.zones.begin(), out.zones.end(), seen->zone) == out.zones.end()) {
       out.zones.push_back(seen->zone);
     }
@@ -153,6 +157,7 @@ LostSearch::Cluster LostSearch::around(const Seen& centre, bool all) const {
     });
     place.against += against ? 1 : 0;
   }
+  place.support = place.evidence - rule_.against_costs * place.against;
   return out;
 }
 
@@ -168,7 +173,7 @@ std::vector<LostSearch::Cluster> LostSearch::clusters(std::size_t most, bool all
   std::vector<Cluster> found;
   for (const Seen* const seed : seeds) found.push_back(around(*seed, all));
   std::stable_sort(found.begin(), found.end(), [](const Cluster& a, const Cluster& b) {
-    return a.place.support > b.place.support;
+    return a.place.evidence > b.place.evidence;
   });
   std::vector<Cluster> apart;
   for (Cluster& cluster : found) {
@@ -195,7 +200,7 @@ bool LostSearch::was_checked(std::uint64_t view, ZoneId zone, const Pose2& pose)
 void LostSearch::look_again(ZoneId zone, std::span<const MapFeatures* const> map) {
   const std::vector<Cluster> leaders = clusters(kLeaders, true);
   for (const Cluster& cluster : leaders) {
-    if (cluster.place.support < kLeaderShare * leaders.front().place.support) break;
+    if (cluster.place.evidence < kLeaderShare * leaders.front().place.evidence) break;
     const std::size_t first = cluster.place.views.front();
     const Pose2 T_map_wheels =
         compose(cluster.place.sights.front().pose, inverse(views_[first].T_wheels_base));
@@ -221,7 +226,7 @@ std::optional<LostPlace> LostSearch::leading() const {
   std::vector<Cluster> best = clusters(2, false);
   if (best.empty()) return std::nullopt;
   LostPlace place = std::move(best.front().place);
-  if (best.size() > 1) place.rival = best[1].place.support;
+  if (best.size() > 1) place.rival = best[1].place.evidence;
   return place;
 }
 
@@ -231,8 +236,7 @@ bool LostSearch::found(const LostPlace& place) const noexcept {
                           : place.views.size() == 2 && place.moved_m >= rule_.moved_m &&
                                 place.support >= rule_.two_views_support;
   return enough && (place.moved_m >= rule_.moved_m || place.turned_rad >= rule_.turned_rad) &&
-         place.rival <= rule_.most_rival * place.support &&
-         place.against <= rule_.most_against * static_cast<double>(place.views.size());
+         place.rival <= rule_.most_rival * place.evidence;
 }
 
 std::vector<ZoneId> LostSearch::leading_zones() const {

@@ -12,22 +12,24 @@
 
 namespace zonepack::localize {
 
-// When a place is believed: one rule for every map. Views that agree through the wheels form a
-// cluster; its support is the sum of their distinct inliers.
+// When a place is believed: one rule for every map. Views that agree through the wheels are for a
+// place; each adds its distinct inliers beyond chance, and a view that should see the place and
+// does not takes something away.
 struct LostRule {
-  int least_distinct = 14;       // of a view that counts
-  double least_explained = .12;  // distinct / visible, of a view that counts
-  int least_support = 50;
+  int least_distinct = 14;       // of a view that is for a place
+  double least_explained = .12;  // distinct / visible, of the same
+  double chance = .08;  // of the features near projected points: those that agree anywhere, at most
+  // A view is against a place when this many of its features are near projected points there, and a
+  // smaller part than least_explained agrees.
+  int should_see = 60;
+  double against_costs = 8;
+  double least_support = 42;
   std::size_t least_views = 3;
   // Two views are enough when they show this much, from places that are moved_m apart: a robot that
   // only turns may see the same pattern of a floor twice, in a wrong place.
-  int two_views_support = 90;
+  double two_views_support = 60;
   double moved_m = 0.3, turned_rad = 0.26;  // between two of the views, one of these
-  double most_rival = 0.6;                  // of the support
-  // A view that should see the map there: this many of its features are near projected points, and
-  // a smaller part than least_explained agrees.
-  int should_see = 60;
-  double most_against = 1;  // views against, of those for
+  double most_rival = 0.6;                  // of what is for the place
 };
 
 // A place that a search believes or leans to.
@@ -35,9 +37,10 @@ struct LostPlace {
   Pose2 T_map_wheels;              // the wheels' frame in the map
   std::vector<std::size_t> views;  // that agree, by place in views(), most inliers first
   std::vector<Sight> sights;       // of each
-  int support = 0;
-  int rival = 0;    // support of the best place elsewhere
-  int against = 0;  // views that should see it and do not
+  double evidence = 0;             // of the views that agree
+  double support = 0;              // the same, less what the views against it cost
+  double rival = 0;                // evidence for the best place elsewhere
+  int against = 0;                 // views that should see it and do not
   double moved_m = 0, turned_rad = 0;
 };
 
@@ -99,6 +102,7 @@ class LostSearch {
   };
 
   bool counts(const Sight& sight) const noexcept;
+  double evidence(const Sight& sight) const noexcept;
   bool agree(const Seen& a, const Seen& b) const noexcept;
   Pose2 carried(const Seen& from, std::size_t to) const noexcept;
   Cluster around(const Seen& centre, bool all) const;
