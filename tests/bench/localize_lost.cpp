@@ -292,7 +292,7 @@ int main(int argc, char** argv) {
   };
   std::printf(
       "%-20s%s starts %zu found within 5 %.3f 10 %.3f %zu %.3f wrong %zu, most support of a wrong "
-      "place %zu  ms of a view and a zone "
+      "place %.0f  ms of a view and a zone "
       "%.2f, of a second look %.2f (%zu, %zu)\n",
       mission.substr(mission.rfind('/') + 1).c_str(), number("cut") != 0 ? " cut" : "", starts,
       within(5), within(10), most, within(most), wrong, most_wrong_support,

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "runtime/localize/lost/zone_order.hpp"
 #include "runtime/odometry/se2.hpp"
 
 namespace zonepack::localize {
@@ -45,14 +44,14 @@ std::vector<FoundFix> fixes_at(std::span<const ViewMoment> moments, const LostSe
   return fixes;
 }
 
-LostSweep::LostSweep(const Catalog& map, PlaceMatcher& matcher, const LostRule& rule)
-    : map_(map), search_(matcher, rule) {}
+LostSweep::LostSweep(std::vector<SearchZone> map, PlaceMatcher& matcher, const LostRule& rule)
+    : map_(std::move(map)), search_(matcher, rule) {}
 
 void LostSweep::begin(std::int64_t now_ns, ZoneId last) {
   active_ = true;
   order_ = search_order(map_, last);
-  looked_.assign(map_.zones.size(), false);
-  failed_.assign(map_.zones.size(), 0);
+  looked_.assign(map_.size(), false);
+  failed_.assign(map_.size(), 0);
   turn_asked_ns_.reset();
   waiting_ = kNoZone;
   waiting_since_ns_ = now_ns;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runtime/localize/lost/lost_search.hpp"
-#include "runtime/map/catalog.hpp"
+#include "runtime/localize/lost/zone_order.hpp"
 
 namespace zonepack::localize {
 
@@ -45,8 +45,8 @@ class LostSweep {
   static constexpr std::size_t kMostMoments = 3;  // the newest images, which are given a fix
   static constexpr std::int64_t kOldest_ns = 4'000'000'000;  // of those
 
-  // `map` and `matcher` must outlive this object.
-  LostSweep(const Catalog& map, PlaceMatcher& matcher, const LostRule& rule = {});
+  // `matcher` must outlive this object.
+  LostSweep(std::vector<SearchZone> map, PlaceMatcher& matcher, const LostRule& rule = {});
 
   void begin(std::int64_t now_ns, ZoneId last);
   void end() noexcept { active_ = false; }
@@ -72,7 +72,7 @@ class LostSweep {
   std::vector<FoundFix> found(std::int64_t now_ns) const;
 
   const LostSearch& search() const noexcept { return search_; }
-  std::size_t zones() const noexcept { return map_.zones.size(); }
+  std::size_t zones() const noexcept { return map_.size(); }
   std::size_t looked_at() const noexcept;  // zones, in this search
   // Zones that did not come in time, each once for each time.
   std::span<const ZoneId> passed_over() const noexcept { return passed_over_; }
@@ -80,7 +80,7 @@ class LostSweep {
  private:
   bool may_try(ZoneId zone) const noexcept;
 
-  const Catalog& map_;
+  std::vector<SearchZone> map_;
   LostSearch search_;
   bool active_ = false;
   std::vector<ZoneId> order_;

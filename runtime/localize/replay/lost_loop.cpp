@@ -21,7 +21,7 @@ constexpr std::int64_t kBelieved_ns = 1'000'000'000;
 
 LostLoop::LostLoop(const Catalog& map, PlaceMatcher& matcher, ImageDescriber describe,
                    std::uint32_t descriptor_bytes, bool start_lost)
-    : sweep_(map, matcher),
+    : sweep_(search_zones(map), matcher),
       describe_(std::move(describe)),
       descriptor_bytes_(descriptor_bytes),
       start_lost_(start_lost) {}

@@ -39,7 +39,7 @@ class LostLoop {
     std::size_t turns_asked = 0;
   };
 
-  // `map` and `matcher` outlive this object. start_lost: the run begins so.
+  // `matcher` outlives this object. start_lost: the run begins so.
   LostLoop(const Catalog& map, PlaceMatcher& matcher, ImageDescriber describe,
            std::uint32_t descriptor_bytes, bool start_lost);
 
