@@ -50,7 +50,8 @@ LostSweep::LostSweep(std::vector<SearchZone> map, PlaceMatcher& matcher, const L
 void LostSweep::begin(std::int64_t now_ns, ZoneId last) {
   active_ = true;
   order_ = search_order(map_, last);
-  looked_.assign(map_.size(), false);
+  looks_.assign(map_.size(), 0);
+  led_ = false;
   failed_.assign(map_.size(), 0);
   turn_asked_ns_.reset();
   waiting_ = kNoZone;
@@ -77,46 +78,56 @@ bool LostSweep::may_try(ZoneId zone) const noexcept {
 
 ZoneId LostSweep::next(std::int64_t now_ns, const std::function<bool(ZoneId)>& resident) {
   if (!active_ || search_.views().empty()) return kNoZone;
-  for (const ZoneId zone : order_) {
-    if (resident(zone) && may_try(zone)) {
-      if (zone == waiting_) waiting_ = kNoZone;
-      return zone;
-    }
-  }
-  // What is being loaded is waited for: each zone is read once.
-  if (waiting_ != kNoZone) {
+  // What is being loaded is waited for: each zone is read once in a round.
+  if (waiting_ != kNoZone && !resident(waiting_)) {
     if (now_ns - waiting_since_ns_ < kPatience_ns) return waiting_;
     passed_over_.push_back(waiting_);
     failed_[waiting_] = views_ + 1;
     waiting_ = kNoZone;
   }
-  std::vector<ZoneId> order;
-  // Places that lead come first once the whole map was seen.
-  if (looked_at() == order_.size()) order = search_.leading_zones();
-  order.insert(order.end(), order_.begin(), order_.end());
-  for (const ZoneId zone : order) {
-    if (!may_try(zone)) continue;
-    waiting_ = zone;
-    waiting_since_ns_ = now_ns;
-    return zone;
+  const ZoneId zone = waiting_ != kNoZone ? waiting_ : choose(resident);
+  waiting_ = kNoZone;
+  if (zone == kNoZone || resident(zone)) return zone;
+  waiting_ = zone;
+  waiting_since_ns_ = now_ns;
+  return zone;
+}
+
+// Once the whole map was seen, every second look goes to where the best places are.
+ZoneId LostSweep::choose(const std::function<bool(ZoneId)>& resident) const {
+  if (looked_at() == order_.size() && !led_) {
+    std::vector<ZoneId> leading = search_.leading_zones();
+    leading.resize(std::min(leading.size(), kMostLeading));
+    const auto zone =
+        std::find_if(leading.begin(), leading.end(), [&](ZoneId one) { return may_try(one); });
+    if (zone != leading.end()) return *zone;
   }
-  return kNoZone;
+  // Those that were looked at least often; among these what is in memory.
+  ZoneId best = kNoZone;
+  for (const ZoneId zone : order_) {
+    if (!may_try(zone)) continue;
+    const auto rank = [&](ZoneId one) { return std::pair(looks_[one], resident(one) ? 0 : 1); };
+    if (best == kNoZone || rank(zone) < rank(best)) best = zone;
+  }
+  return best;
 }
 
 std::size_t LostSweep::look(ZoneId zone, std::span<const MapFeatures* const> map) {
-  looked_[zone] = true;
+  ++looks_[zone];
+  led_ = !led_;
   return search_.match(zone, map);
 }
 
 std::size_t LostSweep::looked_at() const noexcept {
-  return static_cast<std::size_t>(std::count(looked_.begin(), looked_.end(), true));
+  return static_cast<std::size_t>(
+      std::count_if(looks_.begin(), looks_.end(), [](std::size_t looks) { return looks > 0; }));
 }
 
 bool LostSweep::asks_for_turn(std::int64_t now_ns) {
   if (!active_ || views_ == 0) return false;
   if (turn_asked_ns_ && now_ns - *turn_asked_ns_ < kTurnAgain_ns) return false;
   const bool all = std::all_of(order_.begin(), order_.end(),
-                               [&](ZoneId zone) { return looked_[zone] || failed_[zone] != 0; });
+                               [&](ZoneId zone) { return looks_[zone] > 0 || failed_[zone] != 0; });
   if (!all) return false;
   turn_asked_ns_ = now_ns;
   return true;

@@ -41,6 +41,7 @@ class LostSweep {
  public:
   // A zone that did not come within this is passed over in this round: no room, or damage.
   static constexpr std::int64_t kPatience_ns = 8'000'000'000;
+  static constexpr std::size_t kMostLeading = 2;  // zones of leading places
   static constexpr std::int64_t kTurnAgain_ns = 15'000'000'000;
   static constexpr std::size_t kMostMoments = 3;  // the newest images, which are given a fix
   static constexpr std::int64_t kOldest_ns = 4'000'000'000;  // of those
@@ -57,8 +58,9 @@ class LostSweep {
   // Nothing is known of how the robot moved meanwhile.
   void forget_views();
 
-  // The zone to look at next, while there is a view that it was not matched with: resident ones
-  // first, then those that leading places are in, then in order.
+  // The zone to look at next, while there is a view that it was not matched with. Round by round
+  // through the map, in memory first, then in order; after the first round every second look goes
+  // to a zone of the leading places.
   ZoneId next(std::int64_t now_ns, const std::function<bool(ZoneId)>& resident);
   // The zone that next() gave is in memory: returns how many pairs of a view and a signature were
   // compared.
@@ -79,12 +81,14 @@ class LostSweep {
 
  private:
   bool may_try(ZoneId zone) const noexcept;
+  ZoneId choose(const std::function<bool(ZoneId)>& resident) const;
 
   std::vector<SearchZone> map_;
   LostSearch search_;
   bool active_ = false;
   std::vector<ZoneId> order_;
-  std::vector<bool> looked_;         // by zone, in this search
+  std::vector<std::size_t> looks_;   // by zone, in this search
+  bool led_ = false;                 // the last look was at a leading place
   std::vector<std::size_t> failed_;  // by zone: views there were when it was passed over, plus 1
   std::vector<ZoneId> passed_over_;
   std::vector<ViewMoment> moments_;  // the newest last
