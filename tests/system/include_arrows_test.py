@@ -68,7 +68,7 @@ ARROWS = {
                               " runtime/pack_format runtime/pack_format/file",
     "runtime/localize/explain": "platform platform/base runtime/localize/camera runtime/localize/query"
                                 " runtime/localize/solve runtime/map runtime/odometry runtime/report",
-    "runtime/localize/run": "platform platform/base runtime/client runtime/live/histogram.hpp runtime/localize/camera"
+    "runtime/localize/run": "platform platform/base runtime/client runtime/localize/camera"
                             " runtime/localize/query runtime/odometry runtime/protocol runtime/run runtime/settings",
     "runtime/localize/zoneloc": "platform platform/command_line platform/version runtime/localize/explain"
                                 " runtime/localize/replay runtime/localize/run runtime/protocol runtime/report",
