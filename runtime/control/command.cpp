@@ -21,6 +21,12 @@ const char* to_string(Command::Kind kind) noexcept {
       return "map_freed";
     case Command::Kind::kRouteHint:
       return "route_hint";
+    case Command::Kind::kLost:
+      return "lost";
+    case Command::Kind::kSeek:
+      return "seek";
+    case Command::Kind::kAskTurn:
+      return "ask_turn";
   }
   return "unknown";
 }

@@ -23,6 +23,10 @@ struct Command {
     kRelease,    // lease
     kRouteHint,  // route: the zones that a planned way leads through, in order; empty ends it
     kMapFreed,   // the tables of the map before the last change are gone
+    // Of a localizer that searches the map:
+    kLost,     // the pose is wrong or there is none: it is given up until fixes agree again
+    kSeek,     // zone: while lost, the one to have in memory next; kNoZone: none
+    kAskTurn,  // the robot is asked to turn on the spot, so that a place can be told from another
   };
   static constexpr std::size_t kMostRoute = 64;
 

@@ -66,7 +66,10 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
   std::uint32_t errors = 0;
   for (const CanFrame& frame : input.frames) {
     if (frame.error) errors |= frame.id;
-    if (const auto increment = odometry_.take(frame)) filter_.predict(*increment);
+    if (const auto increment = odometry_.take(frame)) {
+      filter_.predict(*increment);
+      state_.T_wheels_base = compose(state_.T_wheels_base, increment->motion.pose);
+    }
   }
   if ((errors & kCanErrorBusOff) != 0) emit(EventKind::kBusOff);
   if ((errors & kCanErrorRestarted) != 0) emit(EventKind::kBusRestarted);
@@ -86,7 +89,8 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
   }
   follow_zones(zone_before);
   const Wanted wanted = list_wanted();
-  zone_keeper_.keep(now_ns, {wanted.zones.data(), wanted.count}, wanted.urgent, wanted.needed);
+  zone_keeper_.keep(now_ns, {wanted.zones.data(), wanted.count}, wanted.urgent, wanted.needed,
+                    !state_.lost || state_.pose.valid);
 
   state_.zone_resident = state_.zone != kNoZone && memory_.resident(state_.zone);
   state_.map_ready = state_.pose.trusted && state_.zone_resident;
@@ -110,6 +114,7 @@ void Cycle::take(const PoseCorrection& fix, std::int64_t now_ns) noexcept {
     case CorrectionVerdict::kTrusted:
       tracker_.restart();
       emit(EventKind::kPoseTrusted);
+      find_pose();
       return;
     case CorrectionVerdict::kReinitialised:
       tracker_.restart();
@@ -148,6 +153,7 @@ void Cycle::dock(const LineEdge& edge, std::int64_t now_ns) noexcept {
   tracker_.restart();
   preload_.restart();
   emit(EventKind::kDocked);
+  find_pose();
 }
 
 void Cycle::pass_marker(std::size_t marker) noexcept {
@@ -164,6 +170,23 @@ void Cycle::freeze(bool by_command, bool by_line) noexcept {
   frozen_ = by_command;
   held_ = by_line;
   memory_.freeze(frozen_ || held_);
+}
+
+void Cycle::lose_pose() noexcept {
+  if (state_.lost) return;
+  emit(EventKind::kPoseLost);  // with the pose that is given up
+  state_.lost = true;
+  filter_.forget();
+  tracker_.forget();
+  preload_.restart();
+  state_.pose = filter_.estimate(state_.pose.t_ns);
+}
+
+void Cycle::find_pose() noexcept {
+  if (!state_.lost) return;
+  state_.lost = false;
+  state_.sought = kNoZone;
+  emit(EventKind::kPoseFound);
 }
 
 void Cycle::watch_odometry(std::int64_t now_ns) noexcept {
@@ -211,6 +234,22 @@ CommandReply Cycle::obey(const Command& command, std::int64_t now_ns) noexcept {
       break;
     case Command::Kind::kMapFreed:
       break;  // for MapSwitcher
+    case Command::Kind::kLost:
+      lose_pose();
+      break;
+    case Command::Kind::kSeek:
+      if (command.zone != kNoZone && !exists(command.zone)) {
+        refuse({ErrorCode::kNotFound});
+      } else if (!state_.lost) {
+        refuse({ErrorCode::kCancelled});
+      } else {
+        state_.sought = command.zone;
+        if (command.zone != kNoZone) emit(EventKind::kZoneSought, command.zone);
+      }
+      break;
+    case Command::Kind::kAskTurn:
+      if (state_.lost) emit(EventKind::kTurnAsked);
+      break;
     case Command::Kind::kRouteHint:
       route_length_ = 0;
       for (std::size_t i = 0; i < command.route_length && i < route_.size(); ++i) {
@@ -226,7 +265,7 @@ void Cycle::follow_zones(ZoneId before) noexcept {
   if (tracker_.zone() != before) {
     state_.zone = tracker_.zone();
     emit(EventKind::kZoneEntered, state_.zone);
-    if (before != kNoZone) {
+    if (before != kNoZone && state_.zone != kNoZone) {
       ++state_.zone_switches;
       if (!memory_.resident(state_.zone)) emit(EventKind::kNotKeepingUp, state_.zone);
     }
@@ -256,6 +295,7 @@ Cycle::Wanted Cycle::list_wanted() const noexcept {
     if (approach.ahead) wanted.add(approach.zone);
   }
   wanted.urgent = wanted.count;
+  wanted.add(state_.sought);
   for (const Approach& approach : preload_.approaches()) wanted.add(approach.zone);
   want_route(wanted);
   wanted.needed = wanted.count;
@@ -287,6 +327,7 @@ void Cycle::go_on_from(const Cycle& other) noexcept {
   state_.zone_resident = false;
   state_.map_ready = false;
   state_.blocked = false;
+  state_.sought = kNoZone;
   start_ns_ = other.start_ns_;
   view_m_ = other.view_m_;
   view_until_ns_ = other.view_until_ns_;

@@ -78,6 +78,9 @@ struct CycleState {
   bool map_ready = false;  // the pose is trusted and the robot's own zone resident
   bool blocked = false;    // a wanted zone does not fit
   bool odometry_stale = true;
+  bool lost = false;        // a localizer said so, and no two fixes agreed since
+  ZoneId sought = kNoZone;  // while lost: the zone that it waits for
+  Pose2 T_wheels_base;      // by the wheels alone, from wherever the run began
   std::uint64_t cycles = 0;
   std::uint64_t zone_switches = 0;  // from one zone to another
 };
@@ -137,6 +140,8 @@ class Cycle {
   void dock(const LineEdge& edge, std::int64_t now_ns) noexcept;
   void pass_marker(std::size_t marker) noexcept;
   void freeze(bool by_command, bool by_line) noexcept;
+  void lose_pose() noexcept;
+  void find_pose() noexcept;
   void watch_odometry(std::int64_t now_ns) noexcept;
   CommandReply obey(const Command& command, std::int64_t now_ns) noexcept;
   void follow_zones(ZoneId before) noexcept;
@@ -170,10 +175,10 @@ class Cycle {
   std::array<CommandReply, kMostCommands> replies_{};
   std::size_t reply_count_ = 0;
   std::int64_t start_ns_ = 0;
-  double view_m_ = 0;  // how far a localizer sees that gave a fix …
+  double view_m_ = 0;               // how far a localizer sees that gave a fix …
   std::int64_t view_until_ns_ = 0;  // … lately
-  bool frozen_ = false;  // by command
-  bool held_ = false;    // by the hold line
+  bool frozen_ = false;             // by command
+  bool held_ = false;               // by the hold line
 };
 
 }  // namespace zonepack

@@ -69,6 +69,14 @@ const char* to_string(EventKind kind) noexcept {
       return "marker_ignored";
     case EventKind::kEnd:
       return "end";
+    case EventKind::kPoseLost:
+      return "pose_lost";
+    case EventKind::kZoneSought:
+      return "zone_sought";
+    case EventKind::kTurnAsked:
+      return "turn_asked";
+    case EventKind::kPoseFound:
+      return "pose_found";
   }
   ZP_REQUIRE(false);
   return "";

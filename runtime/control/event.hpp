@@ -41,6 +41,10 @@ enum class EventKind : std::uint8_t {
   kZoneConfirmed,  // a marker was passed: the robot's zone, moved there if it was another
   kMarkerIgnored,  // reason: why what it says is not believed
   kEnd,
+  kPoseLost,    // a localizer does not know where the robot is: the pose was given up
+  kZoneSought,  // the zone is to be loaded and searched for the robot
+  kTurnAsked,   // the robot should turn on the spot: what was seen fits several places, or none
+  kPoseFound,   // the pose is trusted again
 };
 
 // The word for it in the log ("zone_entered").

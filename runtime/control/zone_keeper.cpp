@@ -69,16 +69,16 @@ void ZoneKeeper::fail(ZoneId zone, ErrorCode code, std::int64_t now_ns) noexcept
   emit(EventKind::kLoadFailed, zone, to_string(code));
 }
 
-void ZoneKeeper::keep(std::int64_t now_ns, std::span<const ZoneId> wanted,
-                      std::size_t urgent, std::size_t needed) noexcept {
+void ZoneKeeper::keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent,
+                      std::size_t needed, bool with_own) noexcept {
   ZP_REQUIRE(wanted.size() <= kMaxWanted);
   drop_unwanted(wanted);
   does_not_fit_ = kNoZone;
   for (std::size_t place = 0; place < wanted.size(); ++place) {
-    const Demand demand = place == 0        ? Demand::kOwn
-                          : place < urgent  ? Demand::kUrgent
-                          : place < needed  ? Demand::kPossible
-                                            : Demand::kUseful;
+    const Demand demand = place == 0 && with_own ? Demand::kOwn
+                          : place < urgent       ? Demand::kUrgent
+                          : place < needed       ? Demand::kPossible
+                                                 : Demand::kUseful;
     see_to(place, wanted, demand, now_ns);
   }
   keep_pinned(now_ns);

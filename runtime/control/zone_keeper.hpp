@@ -51,10 +51,10 @@ class ZoneKeeper {
   void unpin(ZoneId zone) noexcept;
 
   // Takes what is wanted in this cycle, most urgent first, no zone twice, at most kMaxWanted. The
-  // first is the robot's own zone; those after the first `urgent` are only possible, and those
-  // after the first `needed` only useful: they take what room there is and block nothing.
+  // first is the robot's own zone, if with_own; those after the first `urgent` are only possible,
+  // and those after the first `needed` only useful: they take what room there is and block nothing.
   void keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent,
-            std::size_t needed) noexcept;
+            std::size_t needed, bool with_own = true) noexcept;
   void keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent) noexcept {
     keep(now_ns, wanted, urgent, wanted.size());
   }

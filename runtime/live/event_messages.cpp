@@ -73,6 +73,14 @@ EventMessages::Message EventMessages::message_of(const Event& event, const MapVe
       return {"the pose is known, and not trusted until two fixes agree"};
     case EventKind::kPoseTrusted:
       return {"the pose is trusted"};
+    case EventKind::kPoseLost:
+      return {"the robot is lost: the pose is given up, and the map searched zone by zone", true};
+    case EventKind::kZoneSought:
+      return {"zone " + zone + " is searched for the robot"};
+    case EventKind::kTurnAsked:
+      return {"the search needs other views: let the robot turn on the spot, or drive on", true};
+    case EventKind::kPoseFound:
+      return {"the robot is found"};
     case EventKind::kPoseReinitialised:
       return {
           "the pose was moved: refused fixes agreed with each other on another place; look at "

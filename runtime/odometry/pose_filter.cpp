@@ -72,6 +72,15 @@ void PoseFilter::start_at(std::int64_t t_ns, const Pose2& T_map_base, double sig
   list_hypotheses();
 }
 
+void PoseFilter::forget() noexcept {
+  for (std::uint64_t i = history_.oldest(); !history_.empty() && i <= history_.newest(); ++i) {
+    history_.at(i).has_fix = false;
+  }
+  trusted_ = false;
+  candidates_.clear();
+  list_hypotheses();
+}
+
 // Whether a step may become part of the newest entry: short steps share an entry to which nothing
 // is anchored.
 bool PoseFilter::may_extend_newest(std::int64_t t_ns, bool drift) const noexcept {

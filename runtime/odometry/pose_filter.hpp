@@ -92,6 +92,10 @@ class PoseFilter {
   void start_at(std::int64_t t_ns, const Pose2& T_map_base, double sigma_m,
                 double sigma_rad) noexcept;
 
+  // Gives up all that is believed: no pose is known until a fix comes. The wheels' history stays,
+  // so that a fix may still come late.
+  void forget() noexcept;
+
   void predict(const OdometryIncrement& reported) noexcept;
 
   // Once per cycle while odometry is stale: uncertainty grows with the time since the newest

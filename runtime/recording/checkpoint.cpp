@@ -154,6 +154,9 @@ void RunMirror::on_commands(std::span<const Command> commands) {
       case Command::Kind::kLease:
       case Command::Kind::kRelease:
       case Command::Kind::kMapFreed:
+      case Command::Kind::kLost:
+      case Command::Kind::kSeek:
+      case Command::Kind::kAskTurn:
         break;
     }
   }

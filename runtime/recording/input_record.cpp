@@ -159,7 +159,7 @@ bool read_load(ByteReader& in, LoadResult& load) {
 
 bool read_command(ByteReader& in, Command& command) {
   const std::uint8_t kind = in.u8();
-  if (kind > static_cast<std::uint8_t>(Command::Kind::kMapFreed)) return false;
+  if (kind > static_cast<std::uint8_t>(Command::Kind::kAskTurn)) return false;
   command.kind = static_cast<Command::Kind>(kind);
   command.id = in.varint();
   command.zone = in.varint32();

@@ -7,6 +7,7 @@
 #include "runtime/control/cycle.hpp"
 #include "runtime/odometry/pose_filter.hpp"
 #include "runtime/replay/resident_zones.hpp"
+#include "runtime/run/command_lines.hpp"
 
 namespace zonepack {
 
@@ -26,6 +27,9 @@ class FixSource {
   // not before it, after those that were added earlier for the same time: a file of the same fixes
   // gives the same run.
   virtual void after_cycle(const FixMoment& moment, std::vector<PoseCorrection>& fixes) = 0;
+
+  // Called after that: adds what it commands, in the same way.
+  virtual void command(const FixMoment& /*moment*/, std::vector<TimedCommand>& /*commands*/) {}
 };
 
 }  // namespace zonepack

@@ -43,6 +43,7 @@ class LogDrive {
     return ports;
   }
   void ask_for_fixes(std::int64_t now_ns, std::size_t taken);
+  void take_commands(std::int64_t now_ns);
 
   ReplayInput& input_;
   std::unique_ptr<PackFiller> filler_;
@@ -51,6 +52,9 @@ class LogDrive {
   SimCanBus bus_;
   Run run_;
   std::vector<PoseCorrection> new_fixes_;
+  std::vector<TimedCommand> new_commands_;
+  std::vector<Command> commands_;  // of this cycle
+  std::size_t commands_taken_ = 0;
   std::uint64_t frames_ = 0;
 };
 
@@ -84,15 +88,27 @@ void LogDrive::run_cycles(std::int64_t start_ns) {
     frames_ += count;
     std::size_t end = taken;
     while (end < corrections.size() && corrections[end].received_ns <= now_ns) ++end;
+    take_commands(now_ns);
     loads.clear();
     while (const auto load = loader_.poll()) loads.push_back(*load);
     run_.step({.now_ns = now_ns,
                .frames = {frames.data(), count},
                .corrections = {corrections.data() + taken, end - taken},
-               .loads = loads});
+               .loads = loads,
+               .commands = commands_});
     taken = end;
     if (input_.fixes != nullptr) ask_for_fixes(now_ns, taken);
     if (!bus_.next_arrival_ns()) return;
+  }
+}
+
+// Of more than fit in a cycle the rest waits.
+void LogDrive::take_commands(std::int64_t now_ns) {
+  commands_.clear();
+  const std::vector<TimedCommand>& all = input_.commands;
+  while (commands_taken_ < all.size() && all[commands_taken_].received_ns <= now_ns &&
+         commands_.size() < Cycle::kMostCommands) {
+    commands_.push_back(all[commands_taken_++].command);
   }
 }
 
@@ -108,6 +124,17 @@ void LogDrive::ask_for_fixes(std::int64_t now_ns, std::size_t taken) {
     };
     const auto first = all.begin() + static_cast<std::ptrdiff_t>(taken);
     all.insert(std::upper_bound(first, all.end(), fix.received_ns, later), fix);
+  }
+  new_commands_.clear();
+  input_.fixes->command({now_ns, run_.switcher().map().cycle.state(), resident_}, new_commands_);
+  for (const TimedCommand& command : new_commands_) {
+    ZP_REQUIRE(command.received_ns > now_ns);
+    const auto first = input_.commands.begin() + static_cast<std::ptrdiff_t>(commands_taken_);
+    input_.commands.insert(std::upper_bound(first, input_.commands.end(), command.received_ns,
+                                            [](std::int64_t t_ns, const TimedCommand& other) {
+                                              return t_ns < other.received_ns;
+                                            }),
+                           command);
   }
 }
 

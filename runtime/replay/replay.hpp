@@ -11,6 +11,7 @@
 #include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/replay/fix_source.hpp"
+#include "runtime/run/command_lines.hpp"
 #include "runtime/run/map_model.hpp"
 #include "runtime/run/run.hpp"
 #include "runtime/run/run_files.hpp"
@@ -25,6 +26,7 @@ struct ReplayInput {
   const Catalog& catalog;
   CanFrameSource& frames;
   std::vector<PoseCorrection> corrections{};  // in order of reception
+  std::vector<TimedCommand> commands{};       // of a localizer, in order of reception
   const TruthTrack* truth = nullptr;          // for the figures, and for a start at the truth
   StartChoice start{};
   CycleConfig cycle{};

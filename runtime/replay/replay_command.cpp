@@ -31,6 +31,7 @@ ReplayInput replay_input(const ReplayArguments& arguments, RunInputs& inputs, Ca
   const Settings& settings = inputs.settings;
   ReplayInput input{inputs.catalog, log};
   input.corrections = std::move(inputs.corrections);
+  input.commands = std::move(inputs.commands);
   input.truth = inputs.truth ? &*inputs.truth : nullptr;
   input.start = arguments.start;
   input.cycle = cycle_config(settings);
@@ -132,12 +133,15 @@ Outcome<void> replay_log(const ReplayArguments& arguments) {
   if (const auto opened = log.open(); !opened) {
     return failure(log.explain(opened.error()), opened.error().code);
   }
-  if (!inputs->corrections.empty() || inputs->truth) {
+  if (!inputs->corrections.empty() || !inputs->commands.empty() || inputs->truth) {
     const LogTime time = LogTime::read(arguments.can, inputs->settings.can.interface);
     if (time.steps() && !arguments.corrections.empty()) {
       auto corrections = read_corrections_as_written(arguments.corrections);
       if (!corrections) return corrections.error();
       inputs->corrections = time.on_first_clock(std::move(*corrections));
+      for (TimedCommand& command : inputs->commands) {
+        command.received_ns = time.on_first_clock(command.received_ns);
+      }
     }
     if (inputs->truth) inputs->truth = time.on_first_clock(*inputs->truth);
   }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/run/run_inputs.hpp"
 
+#include <algorithm>
+#include <filesystem>
+#include <string_view>
+
 #include "platform/board.hpp"
 #include "runtime/odometry/det_math.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
@@ -57,15 +61,25 @@ Outcome<RunInputs> read_run_inputs(const RunChoices& choices) {
   if (!catalog) return map_failure(folder, catalog.error(), why, budget);
   inputs.catalog = std::move(catalog).value();
 
-  if (!choices.corrections.empty()) {
-    auto corrections = read_corrections(choices.corrections);
-    if (!corrections) return corrections.error();
-    inputs.corrections = std::move(*corrections);
-  }
   if (!choices.truth.empty()) {
     auto truth = read_truth(choices.truth);
     if (!truth) return truth.error();
     inputs.truth = std::move(*truth);
+  }
+  if (!choices.corrections.empty()) {
+    auto corrections = read_corrections(choices.corrections);
+    if (!corrections) return corrections.error();
+    inputs.corrections = std::move(*corrections);
+    const std::vector<CatalogZone>& zones = inputs.catalog.zones;
+    // A pipe is read once, and was: fixes alone come through one.
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(choices.corrections, ignored)) return inputs;
+    auto commands = read_command_lines(choices.corrections, [&](std::string_view name) {
+      const auto zone = std::ranges::find(zones, name, &CatalogZone::name);
+      return zone == zones.end() ? kNoZone : static_cast<ZoneId>(zone - zones.begin());
+    });
+    if (!commands) return commands.error();
+    inputs.commands = std::move(*commands);
   }
   return inputs;
 }

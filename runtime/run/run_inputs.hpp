@@ -10,6 +10,7 @@
 #include "platform/base/failure.hpp"
 #include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
+#include "runtime/run/command_lines.hpp"
 #include "runtime/run/map_model.hpp"
 #include "runtime/run/run_files.hpp"
 #include "runtime/run/run_start.hpp"
@@ -32,6 +33,7 @@ struct RunInputs {
   std::string settings_text;  // the file's
   Catalog catalog;
   std::vector<PoseCorrection> corrections;
+  std::vector<TimedCommand> commands;  // from the file of corrections
   std::optional<TruthTrack> truth;
   std::vector<std::string> warnings;  // for people
 };

@@ -39,7 +39,8 @@ flatbuffers::Offset<wire::Localizer> copy_report(flatbuffers::FlatBufferBuilder&
       from.camera() != nullptr ? to.CreateString(from.camera()) : to.CreateString("");
   return wire::CreateLocalizer(to, camera, from.images_total(), from.fixes_total(),
                                from.skipped_total(), from.refused_total(), from.latency(),
-                               from.query(), list);
+                               from.query(), list, from.lost_total(), from.searching(),
+                               from.search_views(), from.search_zones());
 }
 
 }  // namespace

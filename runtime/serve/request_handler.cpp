@@ -134,6 +134,16 @@ void RequestHandler::handle(const Call& call) {
       return start_dump(call);
     case RequestBody::ReportLocalizer:
       return take_report(call);
+    case RequestBody::LosePose:
+    case RequestBody::AskTurn: {
+      Command order;
+      order.kind = request.body_type() == RequestBody::LosePose ? Command::Kind::kLost
+                                                                : Command::Kind::kAskTurn;
+      return command(call, order);
+    }
+    case RequestBody::SeekZone:
+      return command_on_zone(call, Command::Kind::kSeek, request.body_as_SeekZone()->zone(),
+                             request.body_as_SeekZone()->name());
     default:
       ++counters_.malformed;
       return refuse(call, wire::Fault::Malformed, "unknown request");

@@ -71,6 +71,10 @@ Message answer_status(MessageBuilder& to, std::uint64_t id, const ServedMap& map
   body.add_lines(lines);
   body.add_localizers(localizing);
   body.add_map_ready_latency(&ready);
+  const Pose2& wheels_pose = status.state.T_wheels_base;
+  const wire::Pose wheels(wheels_pose.x_m, wheels_pose.y_m, wheels_pose.yaw_rad);
+  body.add_wheels(&wheels);
+  body.add_sought(status.state.sought);
   add_rest(body, status);
   const StatusSource source{status, counters, map};
   for (const StatusFigure& figure : status_figures()) {

@@ -36,6 +36,8 @@ constexpr StatusFigure kFigures[] = {
      [](const wire::Status& status) {
        return text_of(status.pose() != nullptr && status.pose()->trusted());
      }},
+    {"lost", "zoned_lost", kFlag, "A localizer searches the map for the robot.",
+     ZP_FIELD(lost, live.state.lost)},
     {"pose_sigma_m", "zoned_pose_sigma_meters", kGauge, "Standard deviation of the position.",
      nullptr, [](const wire::Status& status) { return decimal_text(sigma_m_of(status.pose())); }},
     {"blocked", "zoned_blocked", kFlag, "A wanted zone does not fit next to what must stay.",

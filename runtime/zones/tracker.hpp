@@ -37,6 +37,12 @@ class ZoneTracker {
     confirmed_from_ = kNoZone;
   }
 
+  // The robot is in no zone until the next pose.
+  void forget() noexcept {
+    restart();
+    zone_ = pose_zone_ = kNoZone;
+  }
+
   // The robot was seen passing into `zone` from the zone it was in: believed over a pose that lags
   // behind, until the pose is inside too, or more than reach_m plus three sigma from the portals
   // between the two.

@@ -2,4 +2,5 @@
 # Fixes of a mission's images; bench/localize.sh runs it.
 if(TARGET zonepack_localize)
   zonepack_test_program(localize_queries.cpp zonepack_localize)
+  zonepack_test_program(localize_lost.cpp zonepack_localize)
 endif()

@@ -127,7 +127,12 @@ std::string localizers_json(const wire::Status& status) {
             ",\"skipped\":" + std::to_string(one.skipped_total()) +
             ",\"refused\":" + std::to_string(one.refused_total()) +
             ",\"latency_ms\":" + times_json(one.latency()) +
-            ",\"query_ms\":" + times_json(one.query()) + ",\"reasons\":" + reasons_json(one) + "}";
+            ",\"query_ms\":" + times_json(one.query()) + ",\"reasons\":" + reasons_json(one) +
+            ",\"times_lost\":" + std::to_string(one.lost_total()) + ",\"searching\":" +
+            (one.searching() ? "{\"views\":" + std::to_string(one.search_views()) +
+                                   ",\"zones\":" + std::to_string(one.search_zones()) + "}"
+                             : "null") +
+            "}";
   });
   return "[" + text + "]";
 }

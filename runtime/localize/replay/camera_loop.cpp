@@ -43,10 +43,39 @@ void CameraLoop::after_cycle(const FixMoment& moment, std::vector<PoseCorrection
     found_ns_ = moment.now_ns;
     found_after_views_ = views_.size();
   }
+  if (lost_ != nullptr) lost_->follow(moment);
   while (next_ < images_.size() &&
          images_[next_].stamp_ns + options_.latency_ns / 2 <= moment.now_ns) {
     look(images_[next_++], moment, fixes);
     if (tell_) tell_(next_, images_.size());
+  }
+  if (lost_ != nullptr) search(moment, fixes);
+}
+
+void CameraLoop::command(const FixMoment& moment, std::vector<TimedCommand>& commands) {
+  if (lost_ != nullptr) lost_->command(moment, commands);
+}
+
+void CameraLoop::refuse(LoopView& view, const std::string& why) {
+  view.kind = LoopView::Kind::kUnreadable;
+  if (warnings_.size() < kMostWarnings) warnings_.push_back(why);
+}
+
+// The images that the search gives a fix are among the last that were seen.
+void CameraLoop::search(const FixMoment& moment, std::vector<PoseCorrection>& fixes) {
+  for (const FoundFix& found : lost_->search(moment)) {
+    const auto view = std::find_if(views_.rbegin(), views_.rend(), [&](const LoopView& one) {
+      return one.image.stamp_ns == found.stamp_ns && one.kind == LoopView::Kind::kSearching;
+    });
+    if (view == views_.rend()) continue;
+    view->result.accepted = view->result.found = true;
+    view->result.reason = Reason::kAccepted;
+    view->result.pose = found.pose;
+    view->result.distinct = found.seen ? found.seen->distinct : 0;
+    view->fix = {found.stamp_ns, std::max(found.stamp_ns + options_.latency_ns, moment.now_ns + 1),
+                 found.pose,     found.sigma_m,
+                 found.sigma_m,  found.sigma_rad};
+    fixes.push_back(view->fix);
   }
 }
 
@@ -54,18 +83,24 @@ void CameraLoop::look(const LoopImage& image, const FixMoment& moment,
                       std::vector<PoseCorrection>& fixes) {
   LoopView& view = views_.emplace_back();
   view.image = image;
+  if (lost_ != nullptr && lost_->searching()) {
+    const auto seen = lost_->see(image);
+    view.kind = LoopView::Kind::kSearching;
+    if (!seen) refuse(view, seen.error().message);
+    return;
+  }
   if (!moment.state.pose.valid) return;
   const QueryPrior prior = with_map_slack(prior_at(image.stamp_ns, moment.state.pose));
   const auto map = features_.in_reach_of(prior, moment.resident);
   view.offered = static_cast<int>(map.size());
   auto result = find_(image, map, prior);
   if (!result) {
-    view.kind = LoopView::Kind::kUnreadable;
-    if (warnings_.size() < kMostWarnings) warnings_.push_back(result.error().message);
+    refuse(view, result.error().message);
     return;
   }
   view.kind = LoopView::Kind::kQueried;
   view.result = std::move(*result);
+  if (lost_ != nullptr) lost_->judge(view.result, moment);
   if (view.result.accepted && tell_fix_) tell_fix_(view.result);
   view.result.drawn = {};
   if (!view.result.accepted) return;

@@ -11,6 +11,7 @@
 #include "platform/base/failure.hpp"
 #include "runtime/localize/query/query_result.hpp"
 #include "runtime/localize/replay/features_in_reach.hpp"
+#include "runtime/localize/replay/lost_loop.hpp"
 #include "runtime/replay/fix_source.hpp"
 
 namespace zonepack::localize {
@@ -32,6 +33,7 @@ struct LoopView {
   enum class Kind : std::uint8_t {
     kQueried,
     kNoPose,      // the robot did not know where it is
+    kSearching,   // it was lost, and the image a view of the search
     kUnreadable,  // no image
   };
   Kind kind = Kind::kNoPose;
@@ -62,8 +64,11 @@ class CameraLoop final : public FixSource {
 
   // Called with each accepted result, with what is for drawing if the finder gave it.
   void on_fix(std::function<void(const QueryResult&)> tell) { tell_fix_ = std::move(tell); }
+  // Searches the map when the robot is lost, which is noticed. Must outlive this object.
+  void search_with(LostLoop& lost) { lost_ = &lost; }
 
   void after_cycle(const FixMoment& moment, std::vector<PoseCorrection>& fixes) override;
+  void command(const FixMoment& moment, std::vector<TimedCommand>& commands) override;
 
   // Of the images within the run's time, in their order.
   const std::vector<LoopView>& views() const noexcept { return views_; }
@@ -77,11 +82,14 @@ class CameraLoop final : public FixSource {
 
  private:
   void look(const LoopImage& image, const FixMoment& moment, std::vector<PoseCorrection>& fixes);
+  void search(const FixMoment& moment, std::vector<PoseCorrection>& fixes);
+  void refuse(LoopView& view, const std::string& why);
 
   std::vector<LoopImage> images_;
   ImageFinder find_;
   Options options_;
   FeaturesInReach features_;
+  LostLoop* lost_ = nullptr;
   std::function<void(std::size_t, std::size_t)> tell_;
   std::function<void(const QueryResult&)> tell_fix_;
   std::size_t next_ = 0;

@@ -26,12 +26,30 @@ void add(std::string& line, double value) {
   line.append(text.data(), end);
 }
 
+// What the clock of the cycles is ahead of the log's at that time: as at the last image before.
+std::int64_t added_at(std::int64_t t_ns, std::span<const LoopView> views) {
+  std::int64_t added_ns = 0;
+  for (const LoopView& view : views) {
+    if (view.image.stamp_ns > t_ns && &view != views.data()) break;
+    added_ns = view.image.stamp_ns - view.image.recorded_stamp_ns;
+  }
+  return added_ns;
+}
+
 }  // namespace
 
-std::string fixes_text(std::span<const LoopView> views) {
+std::string fixes_text(std::span<const LoopView> views, std::span<const TimedCommand> commands,
+                       const Catalog* map) {
   std::string text =
-      "# stamp received x y yaw sigma_x sigma_y sigma_yaw view   (seconds, metres, radians; base_link "
+      "# stamp received x y yaw sigma_x sigma_y sigma_yaw view   (seconds, metres, radians; "
+      "base_link "
       "in map)\n";
+  for (const TimedCommand& command : commands) {
+    const ZoneId zone = command.command.zone;
+    const bool named = map != nullptr && zone < map->zones.size();
+    text += command_line(command.received_ns - added_at(command.received_ns, views),
+                         command.command, named ? map->zones[zone].name : std::string());
+  }
   for (const LoopView& view : views) {
     if (!view.result.accepted) continue;
     const PoseCorrection& fix = view.fix;
@@ -47,8 +65,10 @@ std::string fixes_text(std::span<const LoopView> views) {
   return text;
 }
 
-Outcome<void> write_fixes(const std::string& path, std::span<const LoopView> views) {
-  if (const auto written = write_file_atomically(path, fixes_text(views)); !written) {
+Outcome<void> write_fixes(const std::string& path, std::span<const LoopView> views,
+                          std::span<const TimedCommand> commands, const Catalog* map) {
+  if (const auto written = write_file_atomically(path, fixes_text(views, commands, map));
+      !written) {
     return cannot_write(path, written.error());
   }
   return {};

@@ -22,6 +22,7 @@
 #include "runtime/localize/replay/fixes_file.hpp"
 #include "runtime/localize/replay/loop_figures.hpp"
 #include "runtime/localize/replay/loop_report.hpp"
+#include "runtime/localize/replay/lost_loop.hpp"
 #include "runtime/localize/replay/map_error.hpp"
 #include "runtime/replay/replay.hpp"
 #include "runtime/run/baseline.hpp"
@@ -160,6 +161,17 @@ class Finder {
   std::size_t wrong_size_ = 0;
 };
 
+ImageDescriber describer(Localizer& localizer) {
+  return [&localizer](const LoopImage& image) -> Outcome<ImageFeatures> {
+    auto pixels = read_image(image.file);
+    if (!pixels) return pixels.error();
+    pixels->stamp_ns = image.stamp_ns;
+    auto features = localizer.detect(*pixels);
+    if (!features) return failure(image.file + ": is not of the calibration's size");
+    return std::move(*features);
+  };
+}
+
 Outcome<void> write_figures(const LoopFigures& figures, const LoopArguments& arguments) {
   Failures failed;
   const bool json_on_output = arguments.json == "-";
@@ -195,11 +207,6 @@ Outcome<void> draw(const LoopArguments& arguments, const LoopInputs& inputs,
 // With `lessons`, that is all it gives: nothing is written.
 Outcome<void> drive(const LoopArguments& arguments, const CameraTraits& camera_is_off_by = {},
                     LoopLessons* lessons = nullptr) {
-  if (arguments.start.kind == StartChoice::Kind::kFix) {
-    note(
-        "warning: nothing ever says where the robot is, so no zone is loaded and no image is "
-        "queried: give --start X,Y,YAW_DEG, or --start truth with --truth FILE");
-  }
   auto inputs = read_inputs(arguments);
   if (!inputs) return inputs.error();
   inputs->camera = corrected(inputs->camera, camera_is_off_by);
@@ -219,6 +226,11 @@ Outcome<void> drive(const LoopArguments& arguments, const CameraTraits& camera_i
   CalibrationWatch watch;
   localizer.options().keep_matches = true;
   loop.on_fix([&](const QueryResult& fix) { watch.add(inputs->camera, fix); });
+  ImageMatcher matcher(localizer, inputs->map.detector);
+  LostLoop lost(inputs->run.catalog, matcher, describer(localizer),
+                inputs->map.detector.descriptor_bytes(),
+                arguments.start.kind == StartChoice::Kind::kFix);
+  loop.search_with(lost);
   HeadingWatch heading(truth);
 
   ReplayInput input{inputs->run.catalog, frames};
@@ -256,6 +268,13 @@ Outcome<void> drive(const LoopArguments& arguments, const CameraTraits& camera_i
   // Read after the run, so that it does not count as the localizer's memory.
   LoopFigures figures = figures_of(loop, result->summary, heading, truth);
   figures.calibration = calibration;
+  figures.lost = lost.figures();
+  if (lost.searching()) figures.lost.lost_s += lost.lost_for_s(loop.end_ns());
+  for (const ZoneId zone : lost.sweep().passed_over()) {
+    note("warning: zone " + inputs->run.catalog.zones[zone].name +
+         " was not loaded in time to be searched: it does not fit next to what is held, or cannot "
+         "be read; a larger --budget gives it room");
+  }
   if (truth != nullptr) {
     const auto map = MapError::read(inputs->map);
     if (!map) return map.error();
@@ -263,7 +282,8 @@ Outcome<void> drive(const LoopArguments& arguments, const CameraTraits& camera_i
   }
   Failures failed;
   failed.add(result->events_written);
-  if (!arguments.fixes.empty()) failed.add(write_fixes(arguments.fixes, loop.views()));
+  if (!arguments.fixes.empty())
+    failed.add(write_fixes(arguments.fixes, loop.views(), lost.commands(), &inputs->run.catalog));
   failed.add(write_figures(figures, arguments));
   if (inputs->beside && !inputs->beside->fixes.empty()) {
     failed.add(check_overlap(arguments.beside, inputs->beside->fixes.front().stamp_ns,

@@ -91,6 +91,8 @@ const char* reason_of(const LoopView& view) noexcept {
       return to_string(view.result.reason);
     case LoopView::Kind::kNoPose:
       return "no_pose";
+    case LoopView::Kind::kSearching:
+      return view.result.accepted ? to_string(Reason::kAccepted) : "searching";
     case LoopView::Kind::kUnreadable:
       return "unreadable_image";
   }

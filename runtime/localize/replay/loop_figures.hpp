@@ -43,6 +43,7 @@ struct LoopFigures {
   std::optional<double> found_after_s;
   std::map<std::string, std::size_t> reasons;
   CalibrationReport calibration;
+  LostLoop::Figures lost;
   RunSummary run;
 };
 

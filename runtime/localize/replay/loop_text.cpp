@@ -93,6 +93,10 @@ std::string figures_json(const LoopFigures& f) {
   add("rss_peak_bytes", std::to_string(f.rss_peak_bytes));
   add("found_after_views", json_of(f.found_after_views));
   add("found_after_s", json_of(f.found_after_s));
+  add("times_lost", std::to_string(f.lost.times_lost));
+  add("lost_s", shortest_number(f.lost.lost_s));
+  add("zones_searched", std::to_string(f.lost.zones_looked_at));
+  add("turns_asked", std::to_string(f.lost.turns_asked));
   add("reasons", reasons_json(f));
   add("calibration", report_json(f.calibration));
   add("budget_bytes", std::to_string(f.run.budget_bytes));
@@ -141,6 +145,12 @@ std::string figures_table(const LoopFigures& f) {
                                 ? std::to_string(f.found_after_views.value_or(0)) + " images, " +
                                       decimals_text(*f.found_after_s, 1) + " s"
                                 : "never");
+  if (f.lost.times_lost > 0) {
+    add("lost", std::to_string(f.lost.times_lost) + " times, for " +
+                    decimals_text(f.lost.lost_s, 1) + " s until found, " +
+                    std::to_string(f.lost.zones_looked_at) + " looks at a zone, a turn asked for " +
+                    std::to_string(f.lost.turns_asked) + " times");
+  }
   add("event_log_hash", f.run.event_log_hash);
   return text;
 }

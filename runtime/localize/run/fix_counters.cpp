@@ -11,6 +11,7 @@ namespace zonepack::localize {
 namespace {
 
 constexpr const char* kWithoutPose = "no_pose";
+constexpr const char* kSearching = "searching";
 
 wire::Timing wire_timing(const Histogram& histogram) {
   const TimingFigures f = histogram.figures();
@@ -54,11 +55,12 @@ flatbuffers::Offset<wire::Localizer> FixCounters::put(flatbuffers::FlatBufferBui
   };
   for (std::size_t i = 0; i < kReasons; ++i) add(to_string(static_cast<Reason>(i)), reasons_[i]);
   add(kWithoutPose, without_pose_);
+  add(kSearching, searching_);
   const auto list = to.CreateVector(reasons);
   const auto name = to.CreateString(camera.substr(0, 128));
   const wire::Timing latency = wire_timing(latency_), query = wire_timing(query_);
   return wire::CreateLocalizer(to, name, images_, fixes(), skipped_, refused_, &latency, &query,
-                               list);
+                               list, lost_, search_.active, search_.views, search_.zones);
 }
 
 std::string FixCounters::json(std::uint64_t rss_peak_bytes) const {
@@ -69,6 +71,7 @@ std::string FixCounters::json(std::uint64_t rss_peak_bytes) const {
   };
   for (std::size_t i = 0; i < kReasons; ++i) add(to_string(static_cast<Reason>(i)), reasons_[i]);
   add(kWithoutPose, without_pose_);
+  add(kSearching, searching_);
   std::string stages;
   for (std::size_t i = 0; i < kStages; ++i) {
     stages += (i == 0 ? "" : ",") + json_quoted(to_string(static_cast<Stage>(i))) + ":{" +
@@ -93,7 +96,9 @@ std::string FixCounters::text() const {
   };
   for (std::size_t i = 0; i < kReasons; ++i) add(to_string(static_cast<Reason>(i)), reasons_[i]);
   add(kWithoutPose, without_pose_);
+  add(kSearching, searching_);
   if (!reasons.empty()) text += "; without one: " + reasons;
+  if (lost_ > 0) text += "; lost " + counted(lost_, "time");
   if (not_taken_ > 0) text += "; " + counted(not_taken_, "fix", "fixes") + " not taken by zoned";
   if (refused_ > 0) text += "; " + counted(refused_, "image") + " refused";
   if (skipped_ > 0) text += "; " + counted(skipped_, "image") + " skipped";

@@ -22,6 +22,16 @@ class FixCounters {
   void count_not_taken() noexcept { ++not_taken_; }
   void count_skipped(std::uint64_t images) noexcept { skipped_ += images; }
   void count_refused() noexcept { ++refused_; }
+  // An image that became a view of a search.
+  void count_searching() noexcept { ++images_, ++searching_; }
+  // A fix of such an image, once the robot was found.
+  void count_found() noexcept { ++accepted_, --searching_; }
+  void count_lost() noexcept { ++lost_; }
+  struct Search {
+    bool active = false;
+    std::uint32_t views = 0, zones = 0;
+  };
+  void set_search(const Search& search) noexcept { search_ = search; }
 
   std::uint64_t images() const noexcept { return images_; }
   std::uint64_t fixes() const noexcept { return accepted_ - not_taken_; }
@@ -37,7 +47,8 @@ class FixCounters {
 
  private:
   std::uint64_t images_ = 0, accepted_ = 0, not_taken_ = 0, skipped_ = 0, refused_ = 0,
-                without_pose_ = 0;
+                without_pose_ = 0, searching_ = 0, lost_ = 0;
+  Search search_;
   std::array<std::uint64_t, kReasons> reasons_{};
   Histogram latency_, query_;
   std::array<Histogram, kStages> stages_;

@@ -18,6 +18,7 @@
 #include "runtime/localize/run/complaints.hpp"
 #include "runtime/localize/run/fix_counters.hpp"
 #include "runtime/localize/run/frame_watch.hpp"
+#include "runtime/localize/run/live_search.hpp"
 #include "runtime/localize/run/resident_features.hpp"
 #include "runtime/localize/run/zoned_link.hpp"
 #include "runtime/run/output_check.hpp"
@@ -62,6 +63,8 @@ class Run {
   std::int64_t run_ns();
   std::optional<RobotState> ask_state();
   void look(const GreyImage& image);
+  bool begin_search(const RobotState& state);
+  void search();
   void give(const GreyImage& image, const QueryResult& result);
   void refuse(const std::string& why);
   void mind_silence(bool came);
@@ -74,6 +77,7 @@ class Run {
   std::unique_ptr<ZonedLink> link_;  // null: zoned is gone
   std::unique_ptr<Localizer> localizer_;
   std::unique_ptr<ResidentFeatures> features_;
+  std::unique_ptr<LiveSearch> search_;  // of the link's map; null: it has no zones to search
   std::string detector_;
   std::uint32_t epoch_ = 0;  // of the map that the detector is of
   RobotState state_;         // as zoned said it last
@@ -101,7 +105,13 @@ Outcome<void> Run::connect() {
     features_ = std::make_unique<ResidentFeatures>(settings->descriptor_bytes());
     detector_ = *detector;
   }
+  search_.reset();
   link_ = std::make_unique<ZonedLink>(std::move(link).value());
+  if (auto zones = link_->search_zones()) {
+    const auto settings = parse_detector(*detector, "zoned's map");
+    search_ = std::make_unique<LiveSearch>(*link_, std::move(zones).value(), *localizer_, *settings,
+                                           counters_, say);
+  }
   epoch_ = link_->epoch();
   state_ = {};
   return {};
@@ -122,12 +132,16 @@ Outcome<void> Run::begin() {
 void Run::lose_zoned(const Error& error) {
   if (error.code == ErrorCode::kBusy) return;  // later
   say(socket_ + ": zoned is gone; waiting for the next");
+  search_.reset();
   link_.reset();
   next_try_ns_ = monotonic_ns() + kReconnect_ns;
 }
 
 void Run::try_again() {
-  if (link_ && link_->epoch() != epoch_) link_.reset();  // another map, perhaps another detector
+  if (link_ && link_->epoch() != epoch_) {  // another map, perhaps another detector
+    search_.reset();
+    link_.reset();
+  }
   const std::int64_t now_ns = monotonic_ns();
   if (link_ || now_ns < next_try_ns_) return;
   next_try_ns_ = now_ns + kReconnect_ns;
@@ -146,6 +160,7 @@ std::optional<RobotState> Run::ask_state() {
     return std::nullopt;
   }
   state_ = *state;
+  if (search_) search_->follow(state_);
   return state_;
 }
 
@@ -178,6 +193,11 @@ void Run::look(const GreyImage& image) {
   };
   if (const std::string why = watch_.refuse(image, clock_now()); !why.empty()) return refuse(why);
   const auto state = ask_state();
+  if (state && search_ && search_->searching()) {
+    search_->see(image, on_run_clock(image.stamp_ns, clock, *state, offset_ns));
+    return search();
+  }
+  if (state && !state->has_pose && begin_search(*state)) return counters_.count_without_pose();
   if (!state || !state->has_pose) {
     counters_.count_without_pose();
     if (state) {
@@ -194,6 +214,41 @@ void Run::look(const GreyImage& image) {
   const QueryResult result = localizer_->query(image, map, prior);
   if (result.accepted) give(image, result);
   counters_.count(result, clock_now() - image.stamp_ns);
+  if (!search_ || !link_) return;
+  if (const auto judged = search_->judge(result, *state); !judged) lose_zoned(judged.error());
+}
+
+// False: this zoned knows no search, or there are no wheels to join views by.
+bool Run::begin_search(const RobotState& state) {
+  if (!search_ || !state.wheels) return false;
+  const auto begun = search_->begin(state);
+  if (begun) return search_->searching();
+  if (begun.error().code == ErrorCode::kCancelled) lose_zoned(begun.error());
+  return false;
+}
+
+// A step of a search; the fixes that it ends with go to zoned.
+void Run::search() {
+  if (!search_ || !search_->searching()) return;
+  const auto state = ask_state();
+  if (!state || !search_) return;
+  const auto fixes = search_->step(*state);
+  if (!fixes) {
+    if (fixes.error().code == ErrorCode::kCancelled) lose_zoned(fixes.error());
+    return;
+  }
+  for (const FoundFix& fix : *fixes) {
+    QueryResult result;
+    result.pose = fix.pose;
+    result.covariance.xx = result.covariance.yy = fix.sigma_m * fix.sigma_m;
+    result.covariance.yaw_yaw = fix.sigma_rad * fix.sigma_rad;
+    result.inliers = fix.seen ? fix.seen->distinct : 0;
+    counters_.count_found();
+    if (const auto given = link_->give(result, fix.stamp_ns, ImageClock::kRun); !given) {
+      counters_.count_not_taken();
+      if (given.error().code == ErrorCode::kCancelled) return lose_zoned(given.error());
+    }
+  }
 }
 
 void Run::give(const GreyImage& image, const QueryResult& result) {
@@ -258,6 +313,7 @@ Outcome<void> Run::go() {
     if (news.state == State::kRefused) refuse(news.why);
     if (news.state == State::kImage) look(image);
     mind_silence(news.state != State::kNothing);
+    search();
     report();
   }
   next_report_ns_ = 0;

@@ -115,6 +115,16 @@ Result<RobotState> ZonedLink::state() {
   state.received_ns = monotonic_ns();
   state.run_ns = status->now_ns();
   state.offset_ns = status->clock_offset_ns();
+  state.lost = status->lost();
+  if (const wire::Pose* const wheels = status->wheels();
+      wheels != nullptr && std::isfinite(wheels->x() + wheels->y() + wheels->yaw())) {
+    state.wheels = Pose2{wheels->x(), wheels->y(), wheels->yaw()};
+  }
+  if (status->pose() != nullptr) {
+    state.trusted = status->pose()->trusted();
+    state.zone = status->pose()->zone();
+    state.own_resident = state.zone == kNoZone || status->zone_resident();
+  }
   const wire::PoseReport* const pose = status->pose();
   if (pose == nullptr || !pose->valid() || pose->pose() == nullptr ||
       pose->covariance() == nullptr) {
@@ -161,6 +171,46 @@ Result<void> ZonedLink::report(const FixCounters& counters, const std::string& c
   const auto body = counters.put(message.builder(), camera);
   return done_or(
       client_.connection().ask(message, wire::CreateReportLocalizer(message.builder(), body)));
+}
+
+Result<void> ZonedLink::lose_pose() {
+  MessageBuilder message;
+  return done_or(client_.connection().ask(message, wire::CreateLosePose(message.builder())));
+}
+
+Result<void> ZonedLink::seek(ZoneId zone) {
+  MessageBuilder message;
+  return done_or(client_.connection().ask(message, wire::CreateSeekZone(message.builder(), zone)));
+}
+
+Result<void> ZonedLink::ask_turn() {
+  MessageBuilder message;
+  return done_or(client_.connection().ask(message, wire::CreateAskTurn(message.builder())));
+}
+
+Result<std::vector<SearchZone>> ZonedLink::search_zones() {
+  const auto all = client_.zones();
+  if (!all) return all.error();
+  std::vector<SearchZone> zones;
+  for (const ZoneInfo& zone : *all) zones.push_back({zone.signatures, {}, {}});
+  for (std::uint32_t first = 0; first < zones.size();) {
+    MessageBuilder message;
+    const auto reply =
+        client_.connection().ask(message, wire::CreateAskOutlines(message.builder(), first));
+    if (!reply) return reply.error();
+    const wire::Outlines* const page = (*reply)->body_as_Outlines();
+    if (page == nullptr || page->outlines() == nullptr || page->outlines()->size() == 0) break;
+    for (const wire::Outline* const outline : *page->outlines()) {
+      if (outline->zone() >= zones.size() || outline->points() == nullptr) continue;
+      Ring ring;
+      for (const wire::OutlinePoint* const point : *outline->points()) {
+        ring.push_back({static_cast<double>(point->x()), static_cast<double>(point->y())});
+      }
+      zones[outline->zone()].middle = middle_of(ring);
+    }
+    first += page->outlines()->size();
+  }
+  return zones;
 }
 
 void ZonedLink::hold(ZoneId zone, const std::function<void()>& fn) {

@@ -9,6 +9,7 @@
 #include "platform/base/failure.hpp"
 #include "runtime/client/client.hpp"
 #include "runtime/localize/camera/image_source.hpp"
+#include "runtime/localize/lost/zone_order.hpp"
 #include "runtime/localize/query/query_result.hpp"
 #include "runtime/localize/run/fix_counters.hpp"
 #include "runtime/localize/run/resident_features.hpp"
@@ -21,6 +22,11 @@ struct RobotState {
   std::int64_t pose_ns = 0;  // the run's clock
   QueryPrior pose;
   double speed_m_s = 0, yaw_rate_rad_s = 0;
+  bool trusted = false;          // two fixes agreed
+  bool lost = false;             // LosePose was taken, and no two fixes agreed since
+  bool own_resident = false;     // the robot's own zone is in memory, or it is in none
+  ZoneId zone = kNoZone;         // the robot's own
+  std::optional<Pose2> wheels;   // at run_ns, by the wheels alone; an older zoned does not say
   std::int64_t run_ns = 0;       // the run's clock, of the last cycle
   std::int64_t offset_ns = 0;    // CLOCK_REALTIME minus the run's clock
   std::int64_t received_ns = 0;  // CLOCK_MONOTONIC
@@ -48,6 +54,13 @@ class ZonedLink final : public ZonesInMemory {
   Result<RobotState> state();
   Result<void> give(const QueryResult& fix, std::int64_t stamp_ns, ImageClock clock);
   Result<void> report(const FixCounters& counters, const std::string& camera);
+
+  // The commands of a search (PROTOCOL.md).
+  Result<void> lose_pose();
+  Result<void> seek(ZoneId zone);
+  Result<void> ask_turn();
+  // The zones of the map, without doors: the protocol has none.
+  Result<std::vector<SearchZone>> search_zones();
 
   std::uint32_t epoch() const noexcept override { return client_.reader().epoch(); }
   std::uint32_t zones() const noexcept override { return client_.reader().zone_count(); }
