@@ -7,7 +7,7 @@
 // prior at a signature elsewhere), roll=, pitch= (degrees by which the camera is tilted, unknown
 // to the localizer), z= (metres by which it is lower), change=gain:2.5 and others
 // (image_changes.hpp), every=N (only each N-th image), lost=1 (no prior), list=1 (a line for each
-// image), needed=10.
+// image), needed=10, json=FILE.
 //
 // Prints the share of right fixes (within 0.5 m and 10 degrees of the truth), wrong ones, errors to
 // the truth and in the map's frame (the truth moved by the nearest signature's own error), and
@@ -132,9 +132,9 @@ Pose2 in_map_frame(const std::vector<MapError>& errors, const Pose2& truth) {
 int main(int argc, char** argv) {
   if (argc < 3) stop("usage: localize_queries MAP MISSION [OPTION=VALUE...]");
   std::map<std::string, std::string> options{
-      {"position", "0.3"}, {"yaw", "5"},   {"seed", "1"}, {"false", "0"},
-      {"roll", "0"},       {"pitch", "0"}, {"z", "0"},    {"change", "none"},
-      {"every", "1"},      {"lost", "0"},  {"list", "0"}, {"needed", "10"}};
+      {"position", "0.3"}, {"yaw", "5"},     {"seed", "1"},      {"false", "0"}, {"roll", "0"},
+      {"pitch", "0"},      {"z", "0"},       {"change", "none"}, {"every", "1"}, {"lost", "0"},
+      {"list", "0"},       {"needed", "10"}, {"json", ""}};
   for (int i = 3; i < argc; ++i) {
     const std::string word = argv[i];
     const std::size_t equal = word.find('=');
@@ -179,6 +179,7 @@ int main(int argc, char** argv) {
   const Covariance2 covariance{position * position, 0, 0, position * position, 0, yaw * yaw};
   const bool lost = number("lost") != 0;
   int total = 0, right = 0, wrong = 0;
+  std::vector<double> rest_ms;  // besides the detector
   std::vector<double> to_truth, to_map, yaw_error, all_ms, sigma_ratio;
   std::vector<std::vector<double>> stage_ms(kStages);
   std::map<std::string, int> reasons;
@@ -201,6 +202,7 @@ int main(int argc, char** argv) {
     ++total;
     ++reasons[to_string(result.reason)];
     all_ms.push_back(static_cast<double>(result.cpu_total_ns) / 1e6);
+    rest_ms.push_back(static_cast<double>(result.cpu_total_ns - result.cpu_ns[0]) / 1e6);
     for (std::size_t k = 0; k < kStages; ++k) {
       stage_ms[k].push_back(static_cast<double>(result.cpu_ns[k]) / 1e6);
     }
@@ -246,6 +248,7 @@ int main(int argc, char** argv) {
   }
   for (const auto& [name, count] : reasons) std::printf(" %s:%d", name.c_str(), count);
   std::printf("\n");
+  int accepted_falsely = 0;
   if (number("false") > 0) {
     int accepted = 0;
     const int trials = static_cast<int>(number("false"));
@@ -268,6 +271,17 @@ int main(int argc, char** argv) {
       }
     }
     std::printf("false priors: %d of %d accepted\n", accepted, trials);
+    accepted_falsely = accepted;
+  }
+  if (!options["json"].empty()) {
+    std::ofstream out(options["json"]);
+    out << "{\"images\": " << total << ", \"right\": " << static_cast<double>(right) / total
+        << ", \"wrong\": " << wrong << ", \"false_accepted\": " << accepted_falsely
+        << ", \"map_p50_cm\": " << 100 * percentile(to_map, 0.5)
+        << ", \"map_p95_cm\": " << 100 * percentile(to_map, 0.95)
+        << ", \"query_p95_ms\": " << percentile(all_ms, 0.95)
+        << ", \"rest_p95_ms\": " << percentile(rest_ms, 0.95) << "}\n";
+    if (!out.flush()) stop("cannot write " + options["json"]);
   }
   return 0;
 }

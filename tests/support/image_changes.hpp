@@ -79,6 +79,59 @@ inline GreyImage motion_blur(const GreyImage& image, int px) {
   return along(image, std::vector<double>(static_cast<std::size_t>(px), 1.0 / px), 1, 0);
 }
 
+// The image as a camera gives it that compresses: blocks of 8x8 by the luminance table of JPEG's
+// annex K, scaled for the quality as libjpeg does.
+inline GreyImage jpeg_again(const GreyImage& image, int quality) {
+  static constexpr int kTable[64] = {16,  11,  10,  16,  24, 40, 51,  61,  12,  12,  14,  19,  26,
+                                     58,  60,  55,  14,  13, 16, 24,  40,  57,  69,  56,  14,  17,
+                                     22,  29,  51,  87,  80, 62, 18,  22,  37,  56,  68,  109, 103,
+                                     77,  24,  35,  55,  64, 81, 104, 113, 92,  49,  64,  78,  87,
+                                     103, 121, 120, 101, 72, 92, 95,  98,  112, 100, 103, 99};
+  const int scale = quality < 50 ? 5000 / quality : 200 - 2 * quality;
+  double wave[8][8];  // [frequency][place]
+  for (int f = 0; f < 8; ++f) {
+    for (int x = 0; x < 8; ++x) {
+      wave[f][x] =
+          (f == 0 ? std::sqrt(0.125) : 0.5) * std::cos((2 * x + 1) * f * 0.19634954084936207);
+    }
+  }
+  GreyImage out = image;
+  for (int top = 0; top + 8 <= image.height; top += 8) {
+    for (int left = 0; left + 8 <= image.width; left += 8) {
+      const auto at = [&](int x, int y) {
+        return static_cast<std::size_t>((top + y) * image.width + left + x);
+      };
+      double rows[8][8], both[8][8];
+      for (int y = 0; y < 8; ++y) {
+        for (int f = 0; f < 8; ++f) {
+          rows[y][f] = 0;
+          for (int x = 0; x < 8; ++x) rows[y][f] += wave[f][x] * (image.pixels[at(x, y)] - 128);
+        }
+      }
+      for (int v = 0; v < 8; ++v) {
+        for (int f = 0; f < 8; ++f) {
+          both[v][f] = 0;
+          for (int y = 0; y < 8; ++y) both[v][f] += wave[v][y] * rows[y][f];
+          const int step = std::clamp((kTable[v * 8 + f] * scale + 50) / 100, 1, 255);
+          both[v][f] = std::round(both[v][f] / step) * step;
+        }
+      }
+      for (int y = 0; y < 8; ++y) {
+        for (int f = 0; f < 8; ++f) {
+          rows[y][f] = 0;
+          for (int v = 0; v < 8; ++v) rows[y][f] += wave[v][y] * both[v][f];
+        }
+        for (int x = 0; x < 8; ++x) {
+          double sum = 128;
+          for (int f = 0; f < 8; ++f) sum += wave[f][x] * rows[y][f];
+          out.pixels[at(x, y)] = to_byte(sum);
+        }
+      }
+    }
+  }
+  return out;
+}
+
 // A grey box over the middle that covers this share of the image.
 inline GreyImage cover(GreyImage image, double share) {
   const double side = std::sqrt(share);
@@ -93,6 +146,30 @@ inline GreyImage cover(GreyImage image, double share) {
   return image;
 }
 
+// Boxes of the image itself put elsewhere in it until they cover about this share: furniture that
+// was moved.
+inline GreyImage boxes(const GreyImage& image, double share, std::uint32_t seed) {
+  GreyImage out = image;
+  std::mt19937 random(seed);
+  const auto below = [&](int most) {
+    return static_cast<int>(random() % static_cast<unsigned>(most));
+  };
+  for (double covered = 0; covered < share * image.width * image.height;) {
+    const int wide = 40 + below(120), high = 40 + below(120);
+    const int from_x = below(image.width - wide), from_y = below(image.height - high);
+    const int to_x = below(image.width - wide), to_y = below(image.height - high);
+    for (int y = 0; y < high; ++y) {
+      const auto from = image.pixels.begin() + (from_y + y) * image.width + from_x;
+      std::copy(from, from + wide, out.pixels.begin() + (to_y + y) * image.width + to_x);
+    }
+    covered += wide * high;
+  }
+  return out;
+}
+
+// The gain of the frame-th image of a camera whose exposure drifts between a half and twice.
+inline double drifting_gain(std::uint32_t frame) { return std::pow(2, std::sin(frame / 15.0)); }
+
 inline GreyImage upside_down(GreyImage image) {
   std::reverse(image.pixels.begin(), image.pixels.end());
   return image;
@@ -103,10 +180,16 @@ inline GreyImage filled(GreyImage image, std::uint8_t value) {
   return image;
 }
 
-// "gain:2.5", "gamma:2", "blur:3", "motion:9", "noise:10", "cover:0.3", "flip", "fill:0"; none for
-// another word.
+// "gain:2.5", "gamma:2", "blur:3", "motion:9", "noise:10", "jpeg:30", "cover:0.3", "boxes:0.15",
+// "drift", "flip", "fill:0", and several joined by '+'; none for another word. `seed`: the frame's
+// number.
 inline std::optional<GreyImage> changed(const GreyImage& image, const std::string& change,
                                         std::uint32_t seed = 1) {
+  const std::size_t plus = change.find('+');
+  if (plus != std::string::npos) {
+    const auto first = changed(image, change.substr(0, plus), seed);
+    return first ? changed(*first, change.substr(plus + 1), seed) : std::nullopt;
+  }
   const std::size_t colon = change.find(':');
   const std::string word = change.substr(0, colon);
   const double value = colon == std::string::npos ? 0 : std::atof(change.c_str() + colon + 1);
@@ -117,6 +200,9 @@ inline std::optional<GreyImage> changed(const GreyImage& image, const std::strin
   if (word == "motion") return motion_blur(image, static_cast<int>(value));
   if (word == "noise") return noise(image, value, seed);
   if (word == "cover") return cover(image, value);
+  if (word == "boxes") return boxes(image, value, seed);
+  if (word == "drift") return gain(image, drifting_gain(seed));
+  if (word == "jpeg") return jpeg_again(image, static_cast<int>(value));
   if (word == "flip") return upside_down(image);
   if (word == "fill") return filled(image, to_byte(value));
   return std::nullopt;

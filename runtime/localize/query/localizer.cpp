@@ -26,6 +26,7 @@ constexpr double kVisible_px = 8;
 // Poses that are worth a second pass: the best of RANSAC and those nearly as good.
 constexpr std::size_t kStarts = 3;
 constexpr double kStartShare = 0.85;
+constexpr double kPlenty = 3;  // times the evidence needed: no other start is looked at
 constexpr std::size_t kFirstPassSignatures = 12;
 constexpr std::size_t kSecondPassSignatures = 60;
 constexpr double kMostTilt_rad = 6 * std::numbers::pi / 180;
@@ -252,6 +253,7 @@ void Localizer::State::locate_near(const ImageFeatures& image,
   std::optional<QueryResult> best;
   for (const PlanarPose& start : planar) {
     if (start.score < kStartShare * planar.front().score) break;
+    if (best && best->evidence > kPlenty * kLeastEvidence) break;
     const Eigen::Isometry3d lifted = lift(start.pose, candidates.floor_z_m);
     const Refined first = refine(sightings, camera, lifted, plane, refining);
     QueryResult here = result;
