@@ -76,6 +76,7 @@ void PoseFilter::forget() noexcept {
   for (std::uint64_t i = history_.oldest(); !history_.empty() && i <= history_.newest(); ++i) {
     history_.at(i).has_fix = false;
   }
+  trim_.forget_fix();
   trusted_ = false;
   candidates_.clear();
   list_hypotheses();

@@ -10,6 +10,7 @@
 
 #include "platform/base/require.hpp"
 #include "platform/clock.hpp"
+#include "runtime/localize/features/banded_corners.hpp"
 
 namespace zonepack::localize {
 
@@ -30,8 +31,7 @@ FeatureDetector::FeatureDetector(const DetectorSettings& s)
   };
   switch (s.detector) {
     case Detector::kGfttOrb:
-      cv_->finder = cv::GFTTDetector::create(s.max_features, s.quality, s.min_distance_px,
-                                             s.block_px, s.harris, s.harris_k);
+      cv_->finder = cv::makePtr<BandedCorners>(s);
       cv_->describer = orb();
       break;
     case Detector::kOrb:
