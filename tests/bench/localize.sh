@@ -6,7 +6,8 @@
 # robot need localize_lost too, and are left out without it. DATA holds hospital.db, hospital-small.db, zones.geojson,
 # scenario1_loop and scenario2_roundtrip with their images. Progress goes to standard error, the table to standard
 # output. --quick takes every fifth image and 200 false priors: a minute, for a first look. Whole, it takes about five.
-# Times are thread CPU: measure on a machine that does nothing else.
+# The acceptance test was fitted to these two missions, so their rows are no proof for another; the stand-ins use the
+# same images too, spoilt by a seed of their own. Times are thread CPU: measure on a machine that does nothing else.
 # Exit code: 0 all targets met, 1 some missed or something failed, 2 usage.
 set -euo pipefail
 quick=
@@ -100,6 +101,8 @@ prior_rows() { # MAP MISSION TARGET P50_CM P95_CM
     "$right >= $3" "$(value "$name" .wrong) == 0"
   row "  fix error in the map's frame p50, p95" - "<= $4, $5 cm" "$(printf '%.2f, %.2f cm' "$p50" "$p95")" \
     "$p50 <= $4" "$p95 <= $5"
+  row "    by a signature that looks the same way" - "(to compare)" \
+    "$(printf '%.2f, %.2f cm' "$(value "$name" .same_way_p50_cm)" "$(value "$name" .same_way_p95_cm)")"
   row "  false priors accepted, of $trials" - "<= 1" "$(value "$name" .false_accepted)" \
     "$(value "$name" .false_accepted) <= 1"
   row "  query p95; besides the detector" "82 to 1515 ms" "<= 20; 8 ms" \
@@ -136,18 +139,14 @@ done
 row "camera tilted by 1 degree, hospital, worst of 8" - ">= 0.90, <= 1 wrong" "$(two "$tilt_least"), $tilt_wrong wrong" \
   "$tilt_least >= 0.9" "$tilt_wrong <= 1"
 
-# Images spoilt: share of right fixes and the least that a prototype reached.
+# Images spoilt: share of right fixes and the least that a prototype reached where undisturbed images gave 0.92. Both
+# maps are held to it.
 while read -r change least; do
   for map in hospital hospital-small; do
     name=change.$map.$change
     queries "$name" $map $s1 change=$change
     right=$(value "$name" .right) wrong=$(value "$name" .wrong)
-    # The prototype's shares are of a map on which undisturbed images gave 0.92; the sparse map is shown beside it.
-    if [ $map = hospital ] || [ "$least" = 0 ]; then
-      row "$change, $map s1" - ">= $least, 0 wrong" "$(two "$right"), $wrong wrong" "$right >= $least" "$wrong == 0"
-    else
-      row "$change, $map s1" - "0 wrong" "$(two "$right"), $wrong wrong" "$wrong == 0"
-    fi
+    row "$change, $map s1" - ">= $least, 0 wrong" "$(two "$right"), $wrong wrong" "$right >= $least" "$wrong == 0"
   done
 done <<'TABLE'
 gain:0.25 0.92
@@ -190,5 +189,5 @@ fi
 
 printf '%-52s | %-15s | %-22s | %s\n' what RTAB-Map target measured
 printf '%s\n' "${rows[@]}"
-echo "$missed of ${#rows[@]} targets missed"
+echo "$missed of ${#rows[@]} rows missed"
 [ "$missed" -eq 0 ]

@@ -165,7 +165,7 @@ Outcome<DetectorSettings> parse_detector(std::string_view provenance, const std:
       return failure(place + ": its features are from the detector " +
                      std::string(kStrategies[number]) +
                      ", which OpenCV's features2d does not have; " + kKnown +
-                     " (RTAB-Map's Kp/DetectorStrategy 8, 2, 1 and 7)");
+                     ": map again with Kp/DetectorStrategy 8, 2, 1 or 7");
   }
   if (blank == std::string_view::npos) return settings;
   Settings from(provenance.substr(blank + 1), place);

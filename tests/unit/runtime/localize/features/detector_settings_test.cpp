@@ -27,7 +27,8 @@ TEST(DetectorSettings, AreTheSourcesDefaultsWithoutSettings) {
 
 TEST(DetectorSettings, RefuseADetectorThatOpenCvLacksByItsName) {
   EXPECT_THAT(parse_detector("6", "maps/a").error().message,
-              testing::AllOf(HasSubstr("maps/a"), HasSubstr("GFTT/BRIEF"), HasSubstr("SIFT")));
+              testing::AllOf(HasSubstr("maps/a"), HasSubstr("GFTT/BRIEF"), HasSubstr("SIFT"),
+                             HasSubstr("map again with Kp/DetectorStrategy 8, 2, 1 or 7")));
   EXPECT_THAT(parse_detector("11", "m").error().message, HasSubstr("SuperPoint"));
   EXPECT_THAT(parse_detector("orb_slam", "m").error().message, HasSubstr("'orb_slam'"));
   EXPECT_THAT(parse_detector("", "m").error().message, HasSubstr("does not say"));
