@@ -66,7 +66,8 @@ Outcome<RecordingPreface> make_preface(const RunArguments& arguments, const RunI
 Notifier service_manager() {
   auto manager = Notifier::from_environment();
   if (manager) return std::move(*manager);
-  std::cerr << kProgram << ": NOTIFY_SOCKET: cannot be reached, so the service manager is not notified\n";
+  std::cerr << kProgram
+            << ": NOTIFY_SOCKET: cannot be reached, so the service manager is not notified\n";
   return {};
 }
 

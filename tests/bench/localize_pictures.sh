@@ -18,7 +18,8 @@ done
 "$bin/zoneloc" replay --config "$source/config/agilex.yaml" --map hospital --can can0.log --images rgb.txt \
   --calibration calibration.yaml --truth base_groundtruth.txt --start truth --picture loop.svg \
   --beside "$data/rtabmap_baseline/hospital_scenario1_loop_thr100_ret10_inittrue.csv"
-"$bin/zoneloc" query --map hospital-small --image rgb/1718021679.000000.jpg --calibration calibration.yaml \
-  --near 1.22,-7.4,0.6 --draw why.svg
+rm rgb && ln -s "$source/tests/data/scenario1_loop/rgb" rgb  # the sample's, as the page's commands use them
+"$bin/zoneloc" query --map hospital-small --image rgb/1718021682.000000.jpg --calibration calibration.yaml \
+  --near 1.1,-9.4,2 --draw why.svg
 rsvg-convert --width 520 why.svg --output why.png
 cp loop.svg why.png "$out"

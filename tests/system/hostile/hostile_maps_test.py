@@ -151,10 +151,13 @@ def main():
     if "is the version that is in use" not in driving.hang_up("good"):
         fail("the good map is no longer known: " + driving.log())
     driving.end()
-    print("peak at start; with SIGHUP: peak, resident after it, locked after it; KiB")
+    print("zoned's memory, KiB; peak at start, the same without a budget, and at SIGHUP: peak, then resident and locked "
+          "after the refusal")
+    print(f"{'map':18}", *(f"{name:>8}" for name in ("start", "freely", "SIGHUP", "resident", "locked")))
     for kind, figures in rows.items():
-        print(f"{kind:18}", *(f"{figure // 1024:8}" for figure in figures))
-    print(f"{'good':18}", f"{usual // 1024:8} {locked // 1024:8}")
+        cells = [f"{figure // 1024:8}" for figure in figures]
+        print(f"{kind:18}", *(cells if len(cells) == 5 else cells[:1] + [f"{'':8}"] + cells[1:]))
+    print(f"{'good, for these':18}", f"{'':8} {'':8} {'':8} {usual // 1024:8} {locked // 1024:8}")
     return 1 if failures else 0
 
 

@@ -72,7 +72,8 @@ for program in zoned zoneloc; do strip -o "$work/$program" "$bin/$program"; done
 "$bin/zonepack" build --db "$db" --zones "$source/tests/data/zones.geojson" --out "$work/map" >/dev/null 2>&1
 budget=$("$bin/zonepack" plan "$work/map" --json - 2>/dev/null | jq .smallest_budget_bytes)
 limit=$((budget + of_zoned + of_zoneloc))
-cat "$mission"/can0.log $(awk -v folder="$mission" '!/^#/ && NF > 1 { print folder "/" $2 }' "$mission/rgb.txt") >/dev/null
+cat "$mission/can0.log" >/dev/null
+awk -v folder="$mission" '!/^#/ && NF > 1 { print folder "/" $2 }' "$mission/rgb.txt" | xargs -d '\n' cat >/dev/null
 drive together $limit
 run=$work/together
 [ "$(cat "$run/code")" = 0 ] || fail "exit code $(cat "$run/code"): $(cat "$run/zoned.txt" "$run/zoneloc.txt")"

@@ -43,6 +43,21 @@ TEST(FloorPlanMarks, TurnTheGridWithTheMap) {
   EXPECT_NE(text.find("transform=\"matrix(0 1 -1 0 "), text.npos);
 }
 
+TEST(FloorPlanMarks, LeaveTheGridsLightnessToThePage) {
+  FloorPlan plan = one_room(10, 8);
+  plan.raster = PlanRaster{"abc", {{0, 0}, {10, 8}}};
+  EXPECT_EQ(count(draw_floor_plan(plan).file_text(), "<image class=\"ground\""), 1U);
+  Svg photo(10, 10);
+  photo.image({0, 0}, 10, 10, false, "abc");
+  EXPECT_EQ(count(photo.file_text(), "class=\"ground\""), 0U);
+}
+
+TEST(FloorPlanMarks, StandUprightOnAPhone) {
+  const FloorPlan tall = one_room(5, 20);
+  EXPECT_EQ(count(draw_floor_plan(tall).file_text(), "down: x"), 1U);
+  EXPECT_EQ(count(draw_floor_plan(narrowed(tall)).file_text(), "up: y"), 1U);
+}
+
 TEST(FloorPlanMarks, DrawFaultsAndOrphansInRedWithNumbers) {
   FloorPlan plan = one_room(10, 8);
   const std::size_t before = count(draw_floor_plan(plan).file_text(), to_hex(kLimit));

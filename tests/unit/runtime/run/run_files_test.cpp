@@ -155,7 +155,8 @@ TEST_F(RunFiles, TruthThatStepsBackOrTurnsIntoNothingIsRefused) {
   };
   for (const Case& c : {
            Case{"2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n",
-                ":2: stamp 1 before the one on the line above; poses stand in order of time: sort -n"},
+                ":2: stamp 1 before the one on the line above; poses stand in order of time: sort "
+                "-n"},
            Case{"1 0 0 0 0 0 0 0\n", ":1: a quaternion that is not of length 1; expected t x y z"},
            Case{"1 0 0 0 0 0 nan 1\n", ":1: a quaternion"},
            Case{"1 inf 0 0 0 0 0 1\n", ":1: a position that is not finite"},
