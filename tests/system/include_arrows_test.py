@@ -67,7 +67,7 @@ ARROWS = {
     "runtime/localize/query": "platform platform/base runtime/client runtime/localize/camera"
                               " runtime/localize/features runtime/localize/solve runtime/map runtime/odometry"
                               " runtime/pack_format runtime/pack_format/file",
-    "runtime/localize/lost": "runtime/localize/camera runtime/localize/features runtime/localize/query"
+    "runtime/localize/lost": "runtime/localize/features runtime/localize/query"
                              " runtime/localize/solve runtime/map runtime/odometry runtime/pack_format"
                              " runtime/pack_format/file",
     "runtime/localize/explain": "platform platform/base runtime/localize/camera runtime/localize/query"
