@@ -51,7 +51,8 @@ ARROWS = {
     "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
     "runtime/listen": "platform platform/base platform/sim runtime/calibrate runtime/live runtime/odometry runtime/run"
                       " runtime/settings",
-    "runtime/localize/replay": "platform platform/base runtime/client runtime/localize/camera runtime/localize/query"
+    "runtime/localize/replay": "platform platform/base runtime/client runtime/localize/camera"
+                               " runtime/localize/features runtime/localize/lost runtime/localize/query runtime/map"
                                " runtime/odometry runtime/replay runtime/report runtime/run",
     "runtime/zoned": "platform platform/command_line platform/version runtime/calibrate runtime/listen runtime/live"
                      " runtime/pack_format/file"
@@ -66,10 +67,14 @@ ARROWS = {
     "runtime/localize/query": "platform platform/base runtime/client runtime/localize/camera"
                               " runtime/localize/features runtime/localize/solve runtime/map runtime/odometry"
                               " runtime/pack_format runtime/pack_format/file",
+    "runtime/localize/lost": "runtime/localize/features runtime/localize/query"
+                             " runtime/localize/solve runtime/map runtime/odometry runtime/pack_format"
+                             " runtime/pack_format/file",
     "runtime/localize/explain": "platform platform/base runtime/localize/camera runtime/localize/query"
                                 " runtime/localize/solve runtime/map runtime/odometry runtime/report",
     "runtime/localize/run": "platform platform/base runtime/client runtime/localize/camera"
-                            " runtime/localize/query runtime/odometry runtime/protocol runtime/run runtime/settings",
+                            " runtime/localize/lost runtime/localize/query runtime/odometry runtime/protocol"
+                            " runtime/run runtime/settings",
     "runtime/localize/zoneloc": "platform platform/command_line platform/version runtime/localize/explain"
                                 " runtime/localize/replay runtime/localize/run runtime/protocol runtime/report runtime/run",
 

@@ -46,6 +46,9 @@ if(TARGET zonepack AND TARGET zoned AND TARGET zonectl AND TARGET zoneloc)
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/localize/replay_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR} $<TARGET_FILE:double_image>)
   set_tests_properties(system/localizer_replay PROPERTIES TIMEOUT 600)
+  add_test(NAME system/localizer_lost
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/localize/lost_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
   add_test(NAME system/version
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/version_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR} ${PROJECT_VERSION})
