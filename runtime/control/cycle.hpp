@@ -170,10 +170,10 @@ class Cycle {
   std::array<CommandReply, kMostCommands> replies_{};
   std::size_t reply_count_ = 0;
   std::int64_t start_ns_ = 0;
-  double view_m_ = 0;  // how far a localizer sees that gave a fix …
+  double view_m_ = 0;               // how far a localizer sees that gave a fix …
   std::int64_t view_until_ns_ = 0;  // … lately
-  bool frozen_ = false;  // by command
-  bool held_ = false;    // by the hold line
+  bool frozen_ = false;             // by command
+  bool held_ = false;               // by the hold line
 };
 
 }  // namespace zonepack

@@ -35,7 +35,8 @@ class FixConsistency {
     const double by = widening();
     if (by == 1) return fix;
     const Covariance2& c = fix.covariance;
-    return {fix.pose, {c.xx * by, c.xy * by, c.x_yaw * by, c.yy * by, c.y_yaw * by, c.yaw_yaw * by}};
+    return {fix.pose,
+            {c.xx * by, c.xy * by, c.x_yaw * by, c.yy * by, c.y_yaw * by, c.yaw_yaw * by}};
   }
 
   double mean() const noexcept { return mean_; }

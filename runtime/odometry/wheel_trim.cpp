@@ -40,7 +40,7 @@ void WheelTrim::learn(const OdometryHistory& history, const UncertainPose& fix,
   if (has_fix_ && index_ >= history.oldest() && index <= index_) return;
   bool whole = has_fix_ && index_ >= history.oldest();
   UncertainPose odometry;
-  double turned = 0;                // full turns count
+  double turned = 0;                    // full turns count
   double by_turn_x = 0, by_turn_y = 0;  // how the place moves as every turn grows by its own size
   for (std::uint64_t i = index_; whole && i < index; ++i) {
     const OdometryHistory::Entry& next = history.at(i + 1);

@@ -39,8 +39,8 @@ class WheelTrim {
 
  private:
   struct Measured {
-    double off = 0;                   // how much more it was than odometry says
-    double by_way = 0, by_turn = 0;   // how much a change of each value changes it
+    double off = 0;                  // how much more it was than odometry says
+    double by_way = 0, by_turn = 0;  // how much a change of each value changes it
     double variance = 0;
   };
   bool take(const Measured& measured) noexcept;

@@ -17,7 +17,8 @@
 namespace zonepack {
 namespace {
 
-constexpr std::string_view kCorrectionColumns = "stamp received x y yaw sigma_x sigma_y sigma_yaw [view]";
+constexpr std::string_view kCorrectionColumns =
+    "stamp received x y yaw sigma_x sigma_y sigma_yaw [view]";
 constexpr std::string_view kTruthColumns = "t x y z qx qy qz qw";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 

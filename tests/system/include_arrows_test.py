@@ -51,8 +51,8 @@ ARROWS = {
     "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
     "runtime/listen": "platform platform/base platform/sim runtime/calibrate runtime/live runtime/odometry runtime/run"
                       " runtime/settings",
-    "runtime/localize/replay": "platform platform/base runtime/client runtime/localize/camera runtime/localize/query"
-                               " runtime/odometry runtime/replay runtime/run",
+    "runtime/localize/replay": "platform platform/base runtime/client runtime/localize/camera runtime/localize/check"
+                               " runtime/localize/query runtime/odometry runtime/replay runtime/run",
     "runtime/zoned": "platform platform/command_line platform/version runtime/calibrate runtime/listen runtime/live"
                      " runtime/pack_format/file"
                      " runtime/recording runtime/replay runtime/report",
@@ -66,10 +66,11 @@ ARROWS = {
     "runtime/localize/query": "platform platform/base runtime/client runtime/localize/camera"
                               " runtime/localize/features runtime/localize/solve runtime/map runtime/odometry"
                               " runtime/pack_format runtime/pack_format/file",
+    "runtime/localize/check": "platform/base runtime/localize/camera runtime/localize/query runtime/localize/solve",
     "runtime/localize/explain": "platform platform/base runtime/localize/camera runtime/localize/query"
                                 " runtime/localize/solve runtime/map runtime/odometry runtime/report",
     "runtime/localize/run": "platform platform/base runtime/client runtime/live/histogram.hpp runtime/localize/camera"
-                            " runtime/localize/query runtime/odometry runtime/protocol runtime/run runtime/settings",
+                            " runtime/localize/check runtime/localize/query runtime/odometry runtime/protocol runtime/run runtime/settings",
     "runtime/localize/zoneloc": "platform platform/command_line platform/version runtime/localize/explain"
                                 " runtime/localize/replay runtime/localize/run runtime/protocol runtime/report",
 
@@ -103,7 +104,7 @@ FOREIGN = {
     r"xxhash": "runtime/pack_format/file",
     r"sodium": "runtime/pack_format/file runtime/run",
     r"yaml-cpp/": "runtime/settings runtime/live runtime/localize/camera",
-    r"Eigen/": "runtime/calibrate runtime/localize/camera runtime/localize/features runtime/localize/solve runtime/localize/query",
+    r"Eigen/": "runtime/calibrate runtime/localize/camera runtime/localize/features runtime/localize/solve runtime/localize/query runtime/localize/check",
     r"CLI/": "platform/command_line runtime/zoned runtime/ctl runtime/localize/zoneloc packer packer/commands"
              " packer/console",
     r"sqlite3\.h": "packer/sources",

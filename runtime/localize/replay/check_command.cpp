@@ -107,9 +107,9 @@ std::string json_of(const Checked& checked) {
   const bool ok = checked.findings.empty();
   return "{\n  \"images\": " + std::to_string(checked.images) +
          ",\n  \"fixes\": " + std::to_string(checked.first.fixes) +
-         ",\n  \"runs\": " + std::to_string(checked.runs) + ",\n  \"ok\": " +
-         (ok ? "true" : "false") + ",\n  \"findings\": [" + found + "],\n  \"tested\": [" + each +
-         "],\n  \"yaml\": " +
+         ",\n  \"runs\": " + std::to_string(checked.runs) +
+         ",\n  \"ok\": " + (ok ? "true" : "false") + ",\n  \"findings\": [" + found +
+         "],\n  \"tested\": [" + each + "],\n  \"yaml\": " +
          (ok ? "null" : json_quoted(calibration_yaml(checked.camera, checked.findings))) + "\n}\n";
 }
 
@@ -117,8 +117,8 @@ Outcome<void> check_and_write(const LoopArguments& arguments) {
   const auto checked = check(arguments);
   if (!checked) return checked.error();
   const bool json_on_output = arguments.json == "-";
-  (json_on_output ? std::cerr : std::cout) << text_of(*checked, arguments.calibration)
-                                           << std::flush;
+  (json_on_output ? std::cerr : std::cout)
+      << text_of(*checked, arguments.calibration) << std::flush;
   if (json_on_output) {
     std::cout << json_of(*checked) << std::flush;
     if (!std::cout) return failure("standard output cannot be written");

@@ -30,7 +30,8 @@ void add(std::string& line, double value) {
 
 std::string fixes_text(std::span<const LoopView> views) {
   std::string text =
-      "# stamp received x y yaw sigma_x sigma_y sigma_yaw view   (seconds, metres, radians; base_link "
+      "# stamp received x y yaw sigma_x sigma_y sigma_yaw view   (seconds, metres, radians; "
+      "base_link "
       "in map)\n";
   for (const LoopView& view : views) {
     if (!view.result.accepted) continue;
