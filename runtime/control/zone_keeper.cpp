@@ -79,7 +79,7 @@ void ZoneKeeper::keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::
                           : place < urgent       ? Demand::kUrgent
                           : place < needed       ? Demand::kPossible
                                                  : Demand::kUseful;
-    see_to(place, wanted, demand, now_ns);
+    see_to(place, wanted, demand, place < urgent || place >= needed, now_ns);
   }
   keep_pinned(now_ns);
   set_blocked(does_not_fit_);
@@ -106,14 +106,14 @@ void ZoneKeeper::drop_unwanted(std::span<const ZoneId> wanted) noexcept {
 }
 
 void ZoneKeeper::see_to(std::size_t place, std::span<const ZoneId> wanted, Demand demand,
-                        std::int64_t now_ns) noexcept {
+                        bool takes_room, std::int64_t now_ns) noexcept {
   const ZoneId zone = wanted[place];
   if (zone == loading_) loads_useful_ = demand == Demand::kUseful;
   memory_.protect(zone);
   if (memory_.state(zone) != ZoneState::kAbsent || !may_start(zone, demand, now_ns)) return;
   const Purpose purpose = demand == Demand::kOwn ? Purpose::kOwnZone : Purpose::kApproach;
   bool admitted = admit(zone, purpose).ok();
-  if (!admitted && demand != Demand::kPossible) {
+  if (!admitted && takes_room) {
     for (std::size_t i = wanted.size(); --i > place;) memory_.unprotect(wanted[i]);
     admitted = admit(zone, purpose).ok();
   }

@@ -85,7 +85,7 @@ class ZoneKeeper {
   bool wants(std::span<const ZoneId> list, ZoneId zone) const noexcept;
   void drop_unwanted(std::span<const ZoneId> wanted) noexcept;
   enum class Demand : std::uint8_t { kUseful, kPossible, kUrgent, kOwn };
-  void see_to(std::size_t place, std::span<const ZoneId> wanted, Demand demand,
+  void see_to(std::size_t place, std::span<const ZoneId> wanted, Demand demand, bool takes_room,
               std::int64_t now_ns) noexcept;
   bool may_start(ZoneId zone, Demand demand, std::int64_t now_ns) noexcept;
   void keep_pinned(std::int64_t now_ns) noexcept;

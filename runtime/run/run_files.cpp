@@ -18,7 +18,8 @@
 namespace zonepack {
 namespace {
 
-constexpr std::string_view kCorrectionColumns = "stamp received x y yaw sigma_x sigma_y sigma_yaw [view]";
+constexpr std::string_view kCorrectionColumns =
+    "stamp received x y yaw sigma_x sigma_y sigma_yaw [view]";
 constexpr std::string_view kTruthColumns = "t x y z qx qy qz qw";
 
 std::vector<std::string_view> split(std::string_view line) {

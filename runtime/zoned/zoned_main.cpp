@@ -39,7 +39,7 @@ void add_choices(CLI::App& app, RunChoices& choices) {
   app.add_option("--map", choices.map, "map folder; else map.path of the settings")
       ->type_name("DIR");
   add_file(app, "--corrections", choices.corrections,
-           "poses from a localizer: stamp received x y yaw sigma_x sigma_y sigma_yaw");
+           "poses from a localizer: stamp received x y yaw sigma_x sigma_y sigma_yaw [view]");
   add_file(app, "--truth", choices.truth, "true poses: t x y z qx qy qz qw");
   add_parsed(app, "--start", "X,Y,YAW_DEG|truth|fix", "where the robot starts (default: fix)",
              "X,Y,YAW_DEG, truth or fix", [&choices](const std::string& text) {

@@ -51,7 +51,7 @@ ARROWS = {
     "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
     "runtime/listen": "platform platform/base platform/sim runtime/calibrate runtime/live runtime/odometry runtime/run"
                       " runtime/settings",
-    "runtime/localize/replay": "platform platform/base runtime/client runtime/localize/camera"
+    "runtime/localize/replay": "platform platform/base runtime/client runtime/localize/camera runtime/localize/check"
                                " runtime/localize/features runtime/localize/lost runtime/localize/query runtime/map"
                                " runtime/odometry runtime/replay runtime/report runtime/run",
     "runtime/zoned": "platform platform/command_line platform/version runtime/calibrate runtime/listen runtime/live"
@@ -70,9 +70,10 @@ ARROWS = {
     "runtime/localize/lost": "runtime/localize/features runtime/localize/query"
                              " runtime/localize/solve runtime/map runtime/odometry runtime/pack_format"
                              " runtime/pack_format/file",
+    "runtime/localize/check": "platform/base runtime/localize/camera runtime/localize/query runtime/localize/solve",
     "runtime/localize/explain": "platform platform/base runtime/localize/camera runtime/localize/query"
                                 " runtime/localize/solve runtime/map runtime/odometry runtime/report",
-    "runtime/localize/run": "platform platform/base runtime/client runtime/localize/camera"
+    "runtime/localize/run": "platform platform/base runtime/client runtime/localize/camera runtime/localize/check"
                             " runtime/localize/lost runtime/localize/query runtime/odometry runtime/protocol"
                             " runtime/run runtime/settings",
     "runtime/localize/zoneloc": "platform platform/command_line platform/version runtime/localize/explain"
@@ -108,7 +109,7 @@ FOREIGN = {
     r"xxhash": "runtime/pack_format/file",
     r"sodium": "runtime/pack_format/file runtime/run",
     r"yaml-cpp/": "runtime/settings runtime/live runtime/localize/camera",
-    r"Eigen/": "runtime/calibrate runtime/localize/camera runtime/localize/features runtime/localize/solve runtime/localize/query",
+    r"Eigen/": "runtime/calibrate runtime/localize/camera runtime/localize/features runtime/localize/solve runtime/localize/query runtime/localize/check",
     r"CLI/": "platform/command_line runtime/zoned runtime/ctl runtime/localize/zoneloc packer packer/commands"
              " packer/console",
     r"sqlite3\.h": "packer/sources",

@@ -136,8 +136,8 @@ CalibrationWatch::Normal CalibrationWatch::normal_of(const CameraModel& camera,
   Normal out;
   out.information = information.bottomRightCorner<kCameraTraits, kCameraTraits>() -
                     across.transpose() * pose.solve(across);
-  out.gradient = gradient.tail<kCameraTraits>() -
-                 across.transpose() * pose.solve(gradient.head<kPose>());
+  out.gradient =
+      gradient.tail<kCameraTraits>() - across.transpose() * pose.solve(gradient.head<kPose>());
   out.fixes = 1;
   return out;
 }

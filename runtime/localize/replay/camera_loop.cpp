@@ -90,7 +90,8 @@ void CameraLoop::look(const LoopImage& image, const FixMoment& moment,
     return;
   }
   if (!moment.state.pose.valid) return;
-  const QueryPrior prior = with_map_slack(prior_at(image.stamp_ns, moment.state.pose));
+  const QueryPrior believed = prior_at(image.stamp_ns, moment.state.pose);
+  const QueryPrior prior = with_map_slack(believed);
   const auto map = features_.in_reach_of(prior, moment.resident);
   view.offered = static_cast<int>(map.size());
   auto result = find_(image, map, prior);
@@ -104,6 +105,11 @@ void CameraLoop::look(const LoopImage& image, const FixMoment& moment,
   if (view.result.accepted && tell_fix_) tell_fix_(view.result);
   view.result.drawn = {};
   if (!view.result.accepted) return;
+  if (moment.state.pose.trusted) {
+    consistency_.add(mahalanobis2({believed.T_map_base, believed.covariance},
+                                  {view.result.pose, view.result.covariance}));
+    widest_ = std::max(widest_, consistency_.widening());
+  }
   view.fix.stamp_ns = image.stamp_ns;
   view.fix.received_ns = std::max(image.stamp_ns + options_.latency_ns, moment.now_ns + 1);
   view.fix.T_map_base = view.result.pose;

@@ -12,6 +12,7 @@
 #include "runtime/localize/query/query_result.hpp"
 #include "runtime/localize/replay/features_in_reach.hpp"
 #include "runtime/localize/replay/lost_loop.hpp"
+#include "runtime/odometry/fix_consistency.hpp"
 #include "runtime/replay/fix_source.hpp"
 
 namespace zonepack::localize {
@@ -74,6 +75,10 @@ class CameraLoop final : public FixSource {
   const std::vector<LoopView>& views() const noexcept { return views_; }
   // Complete messages; the first few images that could not be read.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+  // Of all fixes against the pose that they came to.
+  const FixConsistency& consistency() const noexcept { return consistency_; }
+  // The most by which fixes were off what their covariance says, as a share of variance.
+  double widest() const noexcept { return widest_; }
   std::int64_t start_ns() const noexcept { return start_ns_.value_or(0); }
   std::int64_t end_ns() const noexcept { return end_ns_; }
   // When the pose was trusted for the first time, and how many images had come until then.
@@ -95,6 +100,8 @@ class CameraLoop final : public FixSource {
   std::size_t next_ = 0;
   std::vector<LoopView> views_;
   std::vector<std::string> warnings_;
+  FixConsistency consistency_;
+  double widest_ = 1;
   std::optional<std::int64_t> start_ns_, found_ns_;
   std::int64_t end_ns_ = 0;
   std::size_t found_after_views_ = 0;

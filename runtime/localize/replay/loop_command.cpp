@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "platform/atomic_file.hpp"
+#include "platform/base/number_text.hpp"
 #include "platform/can_log.hpp"
 #include "runtime/localize/camera/calibration.hpp"
 #include "runtime/localize/camera/image_file.hpp"
@@ -264,6 +265,12 @@ Outcome<void> drive(const LoopArguments& arguments, const CameraTraits& camera_i
   for (const CalibrationFinding& finding : calibration.findings) {
     note("warning: " + finding_text(finding, arguments.calibration) +
          "; zoneloc check prints what to paste");
+  }
+  constexpr double kWideSaid = 2;
+  if (loop.widest() > kWideSaid) {
+    note("warning: fixes were " + decimals_text(std::sqrt(loop.widest()), 1) +
+         " times as far from the pose as their covariance says, and counted for less: the map is "
+         "bent, the wheels slip, or the calibration is wrong (zoneloc check)");
   }
   // Read after the run, so that it does not count as the localizer's memory.
   LoopFigures figures = figures_of(loop, result->summary, heading, truth);

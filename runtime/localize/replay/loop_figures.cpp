@@ -116,6 +116,8 @@ LoopFigures figures_of(const CameraLoop& loop, const RunSummary& run, const Head
     out.found_after_views = loop.found_after_views();
     out.found_after_s = static_cast<double>(*found - loop.start_ns()) * 1e-9;
   }
+  out.fix_distance2 = loop.consistency().mean();
+  out.fix_widened = loop.widest();
   out.run = run;
   return out;
 }

@@ -44,6 +44,9 @@ struct LoopFigures {
   std::map<std::string, std::size_t> reasons;
   CalibrationReport calibration;
   LostLoop::Figures lost;
+  // Squared Mahalanobis distance of the last fixes to the pose: 3 when covariances are honest; and
+  // by what variances had to be widened at most, 1: not.
+  double fix_distance2 = 0, fix_widened = 1;
   RunSummary run;
 };
 

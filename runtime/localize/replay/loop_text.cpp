@@ -98,6 +98,9 @@ std::string figures_json(const LoopFigures& f) {
   add("zones_searched", std::to_string(f.lost.zones_looked_at));
   add("turns_asked", std::to_string(f.lost.turns_asked));
   add("reasons", reasons_json(f));
+  add("fix_consistency", "{\"distance2\": " + shortest_number(f.fix_distance2) +
+                             ", \"expected\": 3, \"widened\": " + shortest_number(f.fix_widened) +
+                             "}");
   add("calibration", report_json(f.calibration));
   add("budget_bytes", std::to_string(f.run.budget_bytes));
   add("peak_charged_bytes", std::to_string(f.run.peak_charged_bytes));
@@ -132,6 +135,14 @@ std::string figures_table(const LoopFigures& f) {
   add("  in the map's frame", in_words(f.fix_error_map_m, 100, 1, "cm"));
   add("pose error", in_words(spread(f.run.pose_error_m), 100, 1, "cm"));
   add("heading error", in_words(f.yaw_error_deg, 1, 2, "degrees"));
+  if (f.calibration.enough) {
+    std::string traits;
+    for (const CalibrationFinding& finding : f.calibration.findings) {
+      traits += (traits.empty() ? "" : ", ") + std::string(name_of(finding.trait)) + " off by " +
+                value_text(finding);
+    }
+    add("calibration", traits.empty() ? "nothing seems wrong" : traits);
+  }
   add("in a wrong zone",
       f.run.wrong_zone_s ? decimals_text(*f.run.wrong_zone_s, 2) + " s" : "unknown");
   add("own zone absent",

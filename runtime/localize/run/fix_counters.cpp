@@ -63,7 +63,7 @@ flatbuffers::Offset<wire::Localizer> FixCounters::put(flatbuffers::FlatBufferBui
                                list, lost_, search_.active, search_.views, search_.zones);
 }
 
-std::string FixCounters::json(std::uint64_t rss_peak_bytes) const {
+std::string FixCounters::json(std::uint64_t rss_peak_bytes, const std::string& calibration) const {
   std::string reasons;
   const auto add = [&](const char* reason, std::uint64_t images) {
     if (images == 0) return;
@@ -84,7 +84,8 @@ std::string FixCounters::json(std::uint64_t rss_peak_bytes) const {
          ",\"skipped\":" + std::to_string(skipped_) + ",\"refused\":" + std::to_string(refused_) +
          ",\"reasons\":{" + reasons + "},\"latency_ms\":{" + percentiles_json(latency_) +
          "},\"query_ms\":{" + percentiles_json(query_) + ",\"stages\":{" + stages +
-         "}},\"rss_peak_bytes\":" + std::to_string(rss_peak_bytes) + "}\n";
+         "}},\"rss_peak_bytes\":" + std::to_string(rss_peak_bytes) +
+         ",\"calibration\":" + calibration + "}\n";
 }
 
 std::string FixCounters::text() const {

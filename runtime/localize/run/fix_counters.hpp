@@ -40,8 +40,8 @@ class FixCounters {
                                            const std::string& camera) const;
 
   // Keys: images, accepted, share, fixes_sent, skipped, refused, reasons, latency_ms, query_ms
-  // (p50, p95, max and by stage), rss_peak_bytes.
-  std::string json(std::uint64_t rss_peak_bytes) const;
+  // (p50, p95, max and by stage), rss_peak_bytes, calibration (JSON).
+  std::string json(std::uint64_t rss_peak_bytes, const std::string& calibration = "null") const;
   // "95 fixes of 100 images; without one: few_matches 3, gathered 2"
   std::string text() const;
 

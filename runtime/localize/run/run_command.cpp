@@ -13,6 +13,8 @@
 #include "platform/signals.hpp"
 #include "platform/write_output.hpp"
 #include "runtime/localize/camera/calibration.hpp"
+#include "runtime/localize/check/calibration_text.hpp"
+#include "runtime/localize/check/calibration_watch.hpp"
 #include "runtime/localize/query/fix_slack.hpp"
 #include "runtime/localize/query/localizer.hpp"
 #include "runtime/localize/run/complaints.hpp"
@@ -55,6 +57,7 @@ class Run {
   Outcome<void> begin();
   Outcome<void> go();
   const FixCounters& counters() const noexcept { return counters_; }
+  CalibrationReport calibration() const { return calibration_.report(); }
 
  private:
   Outcome<void> connect();
@@ -66,6 +69,7 @@ class Run {
   bool begin_search(const RobotState& state);
   void search();
   void give(const GreyImage& image, const QueryResult& result);
+  void mind_calibration(const QueryResult& fix);
   void refuse(const std::string& why);
   void mind_silence(bool came);
   void report();
@@ -82,6 +86,8 @@ class Run {
   std::uint32_t epoch_ = 0;  // of the map that the detector is of
   RobotState state_;         // as zoned said it last
   FrameWatch watch_;
+  CalibrationWatch calibration_;
+  bool said_calibration_ = false;
   FixCounters counters_;
   Complaints complaints_{say};
   std::int64_t last_image_ns_ = 0, next_report_ns_ = 0, next_try_ns_ = 0;
@@ -102,6 +108,7 @@ Outcome<void> Run::connect() {
     const auto settings = parse_detector(*detector, "zoned's map");
     if (!settings) return settings.error();
     localizer_ = std::make_unique<Localizer>(camera_, *settings);
+    localizer_->options().keep_matches = true;  // for the calibration watch
     features_ = std::make_unique<ResidentFeatures>(settings->descriptor_bytes());
     detector_ = *detector;
   }
@@ -212,7 +219,10 @@ void Run::look(const GreyImage& image) {
       with_map_slack(pose_at(*state, on_run_clock(image.stamp_ns, clock, *state, offset_ns)));
   const auto map = features_->near(*link_, prior);
   const QueryResult result = localizer_->query(image, map, prior);
-  if (result.accepted) give(image, result);
+  if (result.accepted) {
+    mind_calibration(result);
+    give(image, result);
+  }
   counters_.count(result, clock_now() - image.stamp_ns);
   if (!search_ || !link_) return;
   if (const auto judged = search_->judge(result, *state); !judged) lose_zoned(judged.error());
@@ -248,6 +258,18 @@ void Run::search() {
       counters_.count_not_taken();
       if (given.error().code == ErrorCode::kCancelled) return lose_zoned(given.error());
     }
+  }
+}
+
+// Says once that something seems wrong with the calibration.
+void Run::mind_calibration(const QueryResult& fix) {
+  constexpr std::size_t kEvery = 16;  // fixes
+  calibration_.add(camera_, fix);
+  if (said_calibration_ || calibration_.fixes() % kEvery != 0) return;
+  for (const CalibrationFinding& finding : calibration_.report().findings) {
+    say("warning: " + finding_text(finding, arguments_.calibration) +
+        "; zoneloc check on a recorded drive prints what to paste");
+    said_calibration_ = true;
   }
 }
 
@@ -336,7 +358,8 @@ int run_localizer(const RunArguments& arguments) {
   all.add(run.go());
   say(run.counters().text());
   if (!arguments.json.empty()) {
-    all.add(write_output(arguments.json, run.counters().json(process_peak_bytes())));
+    all.add(write_output(
+        arguments.json, run.counters().json(process_peak_bytes(), report_json(run.calibration()))));
   }
   if (const auto done = all.all(); !done) return report_failure(kZoneloc, done.error());
   return 0;

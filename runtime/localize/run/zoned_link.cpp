@@ -161,9 +161,8 @@ Result<void> ZonedLink::give(const QueryResult& fix, std::int64_t stamp_ns, Imag
   const wire::Pose pose(fix.pose.x_m, fix.pose.y_m, fix.pose.yaw_rad);
   const wire::Covariance covariance(c.xx, c.xy, c.x_yaw, c.yy, c.y_yaw, c.yaw_yaw);
   return done_or(client_.connection().ask(
-      message,
-      wire::CreateGivePose(message.builder(), wire_clock(clock), stamp_ns, &pose,
-                                     &covariance, kView_m)));
+      message, wire::CreateGivePose(message.builder(), wire_clock(clock), stamp_ns, &pose,
+                                    &covariance, kView_m)));
 }
 
 Result<void> ZonedLink::report(const FixCounters& counters, const std::string& camera) {

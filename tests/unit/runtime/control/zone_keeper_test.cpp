@@ -66,6 +66,30 @@ class Keeper : public testing::Test, public EventSink, public ZoneFiller {
   Log log;
 };
 
+// Of zones with 4 slots each, two fit.
+TEST_F(Keeper, WhatIsOnlyUsefulTakesTheRoomThatIsLeftAndBlocksNothing) {
+  const auto keep = [&](std::vector<ZoneId> wanted, std::size_t needed) {
+    now += kSecond;
+    loader->advance_to(now);
+    std::vector<LoadResult> loads;
+    while (const auto load = loader->poll()) loads.push_back(*load);
+    keeper->collect(now, loads);
+    keeper->keep(now, wanted, 1, needed);
+  };
+  keep({0, 1, 2}, 1);
+  keep({0, 1, 2}, 1);
+  EXPECT_EQ(taken(), (Log{"load_started 0", "load_done 0", "load_started 1"}));
+  keep({0, 1, 2}, 1);
+  EXPECT_EQ(taken(), Log{"load_done 1"});  // 2 does not fit, and is not said to
+  EXPECT_FALSE(keeper->blocked());
+  // A nearer one takes the room of one that is farther.
+  keep({0, 3, 1}, 1);
+  EXPECT_EQ(taken(), (Log{"evicted 1", "load_started 3"}));
+  // What is needed does not wait for a load that is only useful.
+  keeper->keep(now, std::vector<ZoneId>{0, 4, 3}, 1, 2);
+  EXPECT_EQ(taken(), Log{"load_cancelled 3"});
+}
+
 TEST_F(Keeper, LoadsWhatIsWantedOneAfterTheOtherMostUrgentFirst) {
   step({0, 1});
   EXPECT_EQ(taken(), Log{"load_started 0"});

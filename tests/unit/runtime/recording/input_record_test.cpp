@@ -90,6 +90,20 @@ std::vector<std::byte> recorded(const CycleInput& input) {
   return bytes;
 }
 
+// Recordings of fixes that say nothing are the same as before there were views.
+TEST(InputRecord, HoldsHowFarALocalizerSeesWhereAFixSaysIt) {
+  Everything all;
+  const std::size_t without = recorded(all.input()).size();
+  all.corrections[1].view_m = 8.5;
+  const std::vector<std::byte> bytes = recorded(all.input());
+  EXPECT_EQ(bytes.size(), without + 2 + 2 * 8);  // kind, count, two f64
+  RecordedInput back;
+  back.now_ns = 1000;
+  ASSERT_TRUE(read_records(bytes, back).ok());
+  EXPECT_EQ(back.corrections[0].view_m, 0);
+  EXPECT_EQ(back.corrections[1].view_m, 8.5);
+}
+
 TEST(InputRecord, GivesBackEveryInputAsItWas) {
   const Everything all;
   const std::vector<std::byte> bytes = recorded(all.input());

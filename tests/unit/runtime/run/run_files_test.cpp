@@ -97,13 +97,22 @@ TEST_F(RunFiles, CorrectionsComeInOrderOfReception) {
   EXPECT_EQ((*read)[2].T_map_base.x_m, 1);
 }
 
+TEST_F(RunFiles, AFixMaySayHowFarItsLocalizerSees) {
+  write("1 2 3 4 0.5 0.1 0.1 0.1 8.5\n2 3 3 4 0.5 0.1 0.1 0.1\n");
+  const auto read = read_corrections(path_);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ((*read)[0].view_m, 8.5);
+  EXPECT_EQ((*read)[1].view_m, 0);
+}
+
 TEST_F(RunFiles, ABadLineIsNamedWithTheExpectedColumns) {
   struct Case {
     const char *text, *fault;
   };
   for (const Case& c : {
            Case{"1 2 3 4 5 6 7\n", ":1: 7 columns; expected stamp received x y yaw"},
-           Case{"1 2 3 4 5 6 7 8 9\n", ":1: 9 columns"},
+           Case{"1 2 3 4 5 6 7 8 9 10\n", ":1: 10 columns"},
+           Case{"1 2 3 4 5 6 7 8 far\n", ":1: \"far\" is not a number"},
            Case{"# x\n1 2 3 4 five 6 7 8\n", ":2: \"five\" is not a number"},
            Case{"1 2 3 4 5 6 7 8x\n", ":1: \"8x\" is not a number"},
            Case{"-1 2 3 4 5 6 7 8\n", ":1: \"-1\" is not a stamp in seconds"},

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "platform/can_log.hpp"
+#include "runtime/localize/query/fix_slack.hpp"
 #include "runtime/localize/replay/fixes_file.hpp"
 #include "runtime/localize/replay/loop_figures.hpp"
 #include "runtime/replay/replay.hpp"
@@ -101,6 +102,7 @@ TEST_F(CameraLoopTest, HandsAFixOverWhenTheLatencyHasPassed) {
     if (!view.result.accepted) continue;
     EXPECT_EQ(view.fix.stamp_ns, view.image.stamp_ns);
     EXPECT_EQ(view.fix.received_ns, view.image.stamp_ns + 150'000'000);
+    EXPECT_EQ(view.fix.view_m, kView_m);
   }
 }
 
@@ -123,6 +125,26 @@ TEST_F(CameraLoopTest, CountsWhatBecameOfEachImage) {
   EXPECT_LT(f.run.pose_error_m->p95, 0.06);
   EXPECT_LT(f.yaw_error_deg->p95, 1.0);
   EXPECT_EQ(loop.warnings().front(), "image: is damaged");
+}
+
+// The finder is 2 cm off and says 3: honest. 20 cm to either side with sigmas of 1 mm is not.
+TEST_F(CameraLoopTest, NoticesFixesThatClaimTooMuch) {
+  CameraLoop honest(images(), finder(), {.latency_ns = 0, .descriptor_bytes = 32});
+  drive(&honest, {});
+  EXPECT_EQ(honest.widest(), 1);
+  queries = 0;
+  const ImageFinder find = finder();
+  const auto boast = [&](const LoopImage& image, std::span<const MapFeatures* const> map,
+                         const QueryPrior& prior) -> Outcome<QueryResult> {
+    auto result = find(image, map, prior);
+    if (!result) return result;
+    result->pose.y_m += queries % 2 == 0 ? 0.2 : -0.2;
+    result->covariance = {1e-6, 0, 0, 1e-6, 0, 1e-6};
+    return result;
+  };
+  CameraLoop boasting(images(), boast, {.latency_ns = 0, .descriptor_bytes = 32});
+  drive(&boasting, {});
+  EXPECT_GT(boasting.widest(), 2);
 }
 
 TEST_F(CameraLoopTest, AsksNothingOfAnImageWhileThePoseIsUnknown) {
