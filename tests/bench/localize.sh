@@ -165,19 +165,19 @@ fill:0 0
 fill:255 0
 TABLE
 
-# A lost robot: localize_lost MAP MISSION json=FILE [every=N] [cut=1], which writes `found` (of the views asked for),
+# A lost robot: localize_lost MAP MISSION SETTINGS json=FILE [every=N] [cut=1], which writes `found` (of the views asked for),
 # `wrong` and `confirmed`.
 if [ -x "$bin/localize_lost" ]; then
   lost_rows() { # MAP FEW FEW_TARGET MANY MANY_TARGET
     local name=lost.$1 mission
     for mission in $s1 $s2; do
       progress "lost, $1 $mission"
-      "$bin/localize_lost" "$work/$1" "$data/$mission" every=$((every * 2)) json="$work/$name.json" >"$work/$name.txt"
+      "$bin/localize_lost" "$work/$1" "$data/$mission" "$root/config/agilex.yaml" every=$((every * 2)) json="$work/$name.json" >"$work/$name.txt"
       row "lost, $1 ${mission%%_*}, found within $2, $4 views" "loads everything" ">= $3, $5, 0 wrong" \
         "$(two "$(value "$name" ".found[\"$2\"]")"), $(two "$(value "$name" ".found[\"$4\"]")"), $(value "$name" .wrong) wrong" \
         "$(value "$name" ".found[\"$2\"]") >= $3" "$(value "$name" ".found[\"$4\"]") >= $5" "$(value "$name" .wrong) == 0"
     done
-    "$bin/localize_lost" "$work/$1" "$data/$s1" cut=1 every=$((every * 2)) json="$work/$name.json" >"$work/$name.txt"
+    "$bin/localize_lost" "$work/$1" "$data/$s1" "$root/config/agilex.yaml" cut=1 every=$((every * 2)) json="$work/$name.json" >"$work/$name.txt"
     row "lost, its place cut out of $1, 20 views" - "0 confirmed" "$(value "$name" .confirmed)" \
       "$(value "$name" .confirmed) == 0"
   }

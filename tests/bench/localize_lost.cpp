@@ -5,9 +5,9 @@
 // MISSION holds rgb.txt, calibration.yaml, base_groundtruth.txt and can0.log; CONFIG is the robot's
 // settings, for its wheels. Options: most=20 (views of a start), every=N (only each N-th image as a
 // start), cut=1 (zones that have a signature in view of one of the start's views are taken out of
-// the map: nothing may be found), list=1 (a line for each start), cache=FILE (keeps what was
-// matched, for the next run with the same map and mission), and the rule's least_distinct=,
-// least_explained=, least_support=, least_views=, two_views_support=,
+// the map: nothing may be found), list=1 (a line for each start), json=FILE (the figures, too),
+// cache=FILE (keeps what was matched, for the next run with the same map and mission), and the
+// rule's least_distinct=, least_explained=, least_support=, least_views=, two_views_support=,
 // most_rival=, against_costs=, chance=, should_see=.
 //
 // Prints the share of starts found within 5, 10 and `most` views, wrong ones (over 0.5 m or 10
@@ -147,8 +147,8 @@ struct Zone {
 
 int main(int argc, char** argv) {
   if (argc < 4) stop("usage: localize_lost MAP MISSION CONFIG [OPTION=VALUE...]");
-  std::map<std::string, std::string> options{
-      {"most", "20"}, {"every", "1"}, {"cut", "0"}, {"list", "0"}, {"cache", ""}};
+  std::map<std::string, std::string> options{{"most", "20"}, {"every", "1"}, {"cut", "0"},
+                                             {"list", "0"},  {"json", ""},   {"cache", ""}};
   LostRule rule;
   for (int i = 4; i < argc; ++i) {
     const std::string word = argv[i];
@@ -298,5 +298,12 @@ int main(int argc, char** argv) {
       within(5), within(10), most, within(most), wrong, most_wrong_support,
       mean_ms(matcher.guess_ns, matcher.guesses), mean_ms(matcher.check_ns, matcher.checks),
       matcher.guesses, matcher.checks);
+  if (!options["json"].empty()) {
+    std::ofstream json(options["json"]);
+    json << "{\"starts\": " << starts << ", \"found\": {\"5\": " << within(5)
+         << ", \"10\": " << within(10) << ", \"" << most << "\": " << within(most)
+         << "}, \"confirmed\": " << found_after.size() << ", \"wrong\": " << wrong << "}\n";
+    if (!json.flush()) stop(options["json"] + ": cannot be written");
+  }
   return 0;
 }
