@@ -21,10 +21,11 @@ TEST(CameraModel, BendsAPixelAsTheLensDoes) {
 TEST(CameraModel, ShiftsAPixelAlongATiltedLens) {
   CameraModel camera = made_camera();
   camera.distortion = {0, 0, 0.01, 0, 0};
-  // x = 0.5, y = 0: dx = 2 p1 x y = 0, dy = p1 (r^2 + 2 y^2) = 0.01 * 0.25; 385 * 0.0025 = 0.9625.
-  const Eigen::Vector2d seen = camera.distort({319.5 + 192.5, 239.5});
-  EXPECT_NEAR(seen.x(), 319.5 + 192.5, 1e-9);
-  EXPECT_NEAR(seen.y(), 239.5 + 0.9625, 1e-9);
+  // x = y = 0.5, r^2 = 0.5: dx = 2 p1 x y = 0.005, dy = p1 (r^2 + 2 y^2) = 0.01; times 385: 1.925
+  // and 3.85 px.
+  const Eigen::Vector2d seen = camera.distort({319.5 + 192.5, 239.5 + 192.5});
+  EXPECT_NEAR(seen.x(), 319.5 + 192.5 + 1.925, 1e-9);
+  EXPECT_NEAR(seen.y(), 239.5 + 192.5 + 3.85, 1e-9);
 }
 
 TEST(CameraModel, UndoesWhatTheLensDoesOverTheWholeImage) {
