@@ -112,6 +112,10 @@ std::vector<std::string> localizer_lines(const wire::Status& status) {
     });
     if (!reasons.empty()) line += "; without one: " + reasons;
     if (one.refused_total() > 0) line += "; " + counted(one.refused_total(), "image") + " refused";
+    if (one.searching()) {
+      line += "; the robot is lost: " + counted(one.search_views(), "view") + " compared with " +
+              counted(one.search_zones(), "zone");
+    }
     lines.push_back(std::move(line));
   });
   return lines;

@@ -48,7 +48,8 @@ void add_drive(CLI::App& drive, LoopArguments& arguments) {
                   "most signatures in memory at once; 0: no limit")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1'000'000'000}))
       ->type_name("N");
-  add_parsed(drive, "--start", "X,Y,YAW_DEG|truth|lost", "where the robot starts (default: lost)",
+  add_parsed(drive, "--start", "X,Y,YAW_DEG|truth|lost",
+             "where the robot starts; lost: it is searched for in the map (default)",
              "X,Y,YAW_DEG, truth or lost",
              [&arguments](const std::string& text) { return take_start(text, arguments); });
   drive

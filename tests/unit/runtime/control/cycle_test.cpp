@@ -108,8 +108,11 @@ class CycleTest : public testing::Test, public EventSink {
       std::vector<ZoneNeed>(3, ZoneNeed{.slots = 4, .signatures = 10});
   const std::vector<LoadWork> work = std::vector<LoadWork>(3, LoadWork{.stored_bytes = 100});
   const std::vector<float> load_s = std::vector<float>(3, 0.12f);
-  Residency memory{
-      3, {.budget = 800, .slot_bytes = 100, .largest_pair = {.slots = 8, .signatures = 20}}};
+  Residency memory{3,
+                   {.budget = 800,
+                    .slot_bytes = 100,
+                    .largest_pair = {.slots = 8, .signatures = 20},
+                    .lease_ns = 1'000'000'000}};
   ModelledLoader loader{8, work, {.storage = 1000, .decode = 1000}, nullptr};
   static CycleConfig robot() {
     CycleConfig config = testing_support::sample_robot();
@@ -374,7 +377,7 @@ TEST_F(CycleTest, ALostRobotHasOneZoneAfterTheOtherInMemory) {
 }
 
 // Leases hold the rooms a and b: c does not fit, and waits.
-TEST_F(CycleTest, ASoughtZoneTakesNoRoomFromLeasesAndPins) {
+TEST_F(CycleTest, ASoughtZoneTakesNoRoomFromLeases) {
   trust(2, 2);
   commands = {command(Command::Kind::kLease, 0)};
   step();
