@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cstdio>
 
+#include "platform/base/utf8.hpp"
+
 namespace zonepack {
 namespace {
 
@@ -89,7 +91,7 @@ std::int64_t days_since_1970(std::int64_t year, unsigned month, unsigned day) no
 }  // namespace
 
 bool CanAscLines::begins_with(std::string_view line) noexcept {
-  if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+  line = without_byte_order_mark(line);
   return line.starts_with("date ") || line.starts_with("base hex") || line.starts_with("base dec");
 }
 
@@ -121,7 +123,7 @@ void CanAscLines::read_date(std::string_view line) noexcept {
 }
 
 CanLogLine CanAscLines::parse(std::string_view line) noexcept {
-  if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+  line = without_byte_order_mark(line);
   Words words(line);
   const std::string_view first = words.next();
   if (first == "date") {
@@ -209,7 +211,7 @@ CanLogLine CanAscLines::parse_event(std::string_view text) noexcept {
 }
 
 const char* foreign_can_log(std::string_view line) noexcept {
-  if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+  line = without_byte_order_mark(line);
   if (line.starts_with("***BUSMASTER")) {
     return "a BusMaster log; convert it with: awk '/^[0-9]/{split($1,t,\":\");n=substr($4,3);"
            "w=$5~/x/?8:3;printf \"(%d.%s00) can%d %s#\",t[1]*3600+t[2]*60+t[3],t[4],$3-1,"

@@ -44,7 +44,7 @@ cross_stage() {  # ARCH
 
 # One boot of the virtual robot. All tests on all its kernels are `toolchains/run system`.
 stage_robot() {
-  local there=(drive_test bus_faults_test check_test)
+  local there=(drive_test bus_faults_test check_test localizer_test)
   do_install packages-cross.txt || exit 77
   prepare_robot arm64
   stage "system tests: on the virtual robot, $flavour"

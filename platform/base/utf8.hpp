@@ -21,4 +21,10 @@ constexpr bool continues_utf8(char c) noexcept {
 // Code points of well-formed text: columns of a terminal, for most scripts.
 std::size_t utf8_width(std::string_view text) noexcept;
 
+// A text without the mark that editors of some systems put before its first line.
+inline std::string_view without_byte_order_mark(std::string_view text) noexcept {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  return text;
+}
+
 }  // namespace zonepack

@@ -12,8 +12,8 @@
 #include "platform/spsc_queue.hpp"
 #include "runtime/control/input_sink.hpp"
 #include "runtime/control/map_switcher.hpp"
-#include "runtime/live/histogram.hpp"
 #include "runtime/live/live_notes.hpp"
+#include "runtime/run/histogram.hpp"
 #include "runtime/run/live_status.hpp"
 
 namespace zonepack {

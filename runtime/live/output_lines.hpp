@@ -11,8 +11,8 @@
 #include "platform/base/failure.hpp"
 #include "platform/gpio_line.hpp"
 #include "platform/realtime.hpp"
-#include "runtime/live/histogram.hpp"
 #include "runtime/live/line_requests.hpp"
+#include "runtime/run/histogram.hpp"
 #include "runtime/run/line_board.hpp"
 #include "runtime/run/live_status.hpp"
 

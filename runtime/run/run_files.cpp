@@ -11,6 +11,7 @@
 
 #include "platform/base/file_kind.hpp"
 #include "platform/base/require.hpp"
+#include "platform/base/utf8.hpp"
 #include "runtime/odometry/det_math.hpp"
 #include "runtime/run/stamp_text.hpp"
 
@@ -20,7 +21,6 @@ namespace {
 constexpr std::string_view kCorrectionColumns =
     "stamp received x y yaw sigma_x sigma_y sigma_yaw [view]";
 constexpr std::string_view kTruthColumns = "t x y z qx qy qz qw";
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 std::vector<std::string_view> split(std::string_view line) {
   std::vector<std::string_view> words;
@@ -73,7 +73,7 @@ Outcome<void> for_each_record(const std::string& path, std::string_view columns,
   bool first = true;
   for (std::size_t number = 1; std::getline(file, line); ++number) {
     std::string_view text = line;
-    if (number == 1 && text.starts_with(kByteOrderMark)) text.remove_prefix(3);
+    if (number == 1) text = without_byte_order_mark(text);
     const std::vector<std::string_view> words = split(text);
     if (words.empty()) continue;
     const bool header = first && is_header(words);

@@ -4,12 +4,12 @@
 #include <charconv>
 #include <limits>
 
+#include "platform/base/utf8.hpp"
+
 namespace zonepack {
 namespace {
 
 using TokenKind = DbcToken::Kind;
-
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 bool is_letter(char c) noexcept {
@@ -41,7 +41,7 @@ double beyond_double(std::string_view text) noexcept {
   return small ? 0 : std::numeric_limits<double>::infinity();
 }
 
-bool read_number(std::string_view text, double& number) noexcept {
+bool read_dbc_number(std::string_view text, double& number) noexcept {
   if (is_letter(text[0])) return false;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error == std::errc::result_out_of_range) number = beyond_double(text);
@@ -50,9 +50,7 @@ bool read_number(std::string_view text, double& number) noexcept {
 
 }  // namespace
 
-DbcLexer::DbcLexer(std::string_view bytes) noexcept : bytes_(bytes) {
-  if (bytes_.starts_with(kByteOrderMark)) bytes_.remove_prefix(kByteOrderMark.size());
-}
+DbcLexer::DbcLexer(std::string_view bytes) noexcept : bytes_(without_byte_order_mark(bytes)) {}
 
 void DbcLexer::advance() noexcept {
   if (bytes_[at_++] == '\n') {
@@ -101,9 +99,9 @@ DbcToken DbcLexer::next() noexcept {
   }
   const std::size_t length = run_length(bytes_.substr(at_));
   token.text = bytes_.substr(at_, length == 0 ? 1 : length);
-  token.kind = length == 0                             ? TokenKind::kSign
-               : read_number(token.text, token.number) ? TokenKind::kNumber
-                                                       : TokenKind::kWord;
+  token.kind = length == 0                                 ? TokenKind::kSign
+               : read_dbc_number(token.text, token.number) ? TokenKind::kNumber
+                                                           : TokenKind::kWord;
   at_ += token.text.size();
   column_ += static_cast<std::uint32_t>(token.text.size());
   return token;

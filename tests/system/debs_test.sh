@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# usage: debs_test.sh BUILD OWNERS [runtime]: the .deb packages in BUILD, or the runtime's alone, hold what they are
-# named after, and the programs in them need exactly the packages that own their libraries, as the list
-# OWNERS/.owners says, in lines of "library package".
+# usage: debs_test.sh BUILD OWNERS: the .deb packages in BUILD hold what they are named after, and the programs in them
+# need exactly the packages that own their libraries, as the list OWNERS/.owners says, in lines of "library package".
 set -euo pipefail
 build=$1 owners=$2
 work=$(mktemp -d)
@@ -28,19 +27,17 @@ check() {  # PACKAGE FILE...: has these files, and depends on the owners of what
 
 check zonepack-runtime usr/bin/zoned usr/share/man/man1/zonectl.1.gz usr/share/bash-completion/completions/zoned \
   usr/lib/systemd/system/zoned.service usr/share/zonepack/config/agilex.yaml
-if [ "${3:-}" != runtime ]; then
-  if compgen -G "$build/zonepack-localizer_*.deb" >/dev/null; then
-    check zonepack-localizer usr/bin/zoneloc usr/share/man/man1/zoneloc.1.gz \
-      usr/share/bash-completion/completions/zoneloc usr/lib/systemd/system/zoneloc.service
-  fi
-  for program in zoned zonectl; do
-    if readelf -d "$work/zonepack-runtime/usr/bin/$program" | grep -E 'opencv|jpeg|png'; then
-      echo "$program is linked to the libraries of zoneloc"
-      exit 1
-    fi
-  done
-  check zonepack-tools usr/bin/zonepack usr/share/man/man1/zonepack.1.gz
-  check zonepack-dev 'usr/lib/[a-z0-9_-]+/libzonepack_runtime.a' 'usr/lib/[a-z0-9_-]+/cmake/zonepack/zonepackConfig.cmake' \
-    usr/include/zonepack/platform/base/result.hpp
+if compgen -G "$build/zonepack-localizer_*.deb" >/dev/null; then
+  check zonepack-localizer usr/bin/zoneloc usr/share/man/man1/zoneloc.1.gz \
+    usr/share/bash-completion/completions/zoneloc usr/lib/systemd/system/zoneloc.service
 fi
+for program in zoned zonectl; do
+  if readelf -d "$work/zonepack-runtime/usr/bin/$program" | grep -E 'opencv|jpeg|png'; then
+    echo "$program is linked to the libraries of zoneloc"
+    exit 1
+  fi
+done
+check zonepack-tools usr/bin/zonepack usr/share/man/man1/zonepack.1.gz
+check zonepack-dev 'usr/lib/[a-z0-9_-]+/libzonepack_runtime.a' 'usr/lib/[a-z0-9_-]+/cmake/zonepack/zonepackConfig.cmake' \
+  usr/include/zonepack/platform/base/result.hpp
 echo "packages: their files are there, and Depends names the owners of all libraries they need"

@@ -69,7 +69,7 @@ ARROWS = {
     "runtime/localize/check": "platform/base runtime/localize/camera runtime/localize/query runtime/localize/solve",
     "runtime/localize/explain": "platform platform/base runtime/localize/camera runtime/localize/query"
                                 " runtime/localize/solve runtime/map runtime/odometry runtime/report",
-    "runtime/localize/run": "platform platform/base runtime/client runtime/live/histogram.hpp runtime/localize/camera"
+    "runtime/localize/run": "platform platform/base runtime/client runtime/localize/camera"
                             " runtime/localize/check runtime/localize/query runtime/odometry runtime/protocol runtime/run runtime/settings",
     "runtime/localize/zoneloc": "platform platform/command_line platform/version runtime/localize/explain"
                                 " runtime/localize/replay runtime/localize/run runtime/protocol runtime/report",

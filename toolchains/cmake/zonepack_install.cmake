@@ -24,7 +24,7 @@ endfunction()
 zonepack_install_libraries(zonepack-client zonepack_platform zonepack_views zonepack_protocol
                            zonepack_client)
 zonepack_install_libraries(zonepack-runtime zonepack_gpio zonepack_pack_format zonepack_report zonepack_core
-                           zonepack_runtime)
+                           zonepack_run zonepack_runtime)
 zonepack_install_headers(platform runtime)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/generated/runtime
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/zonepack COMPONENT dev FILES_MATCHING PATTERN "*_generated.h")

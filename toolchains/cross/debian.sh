@@ -62,3 +62,12 @@ unpack() {  # DEB DIR
   dpkg-deb --fsys-tarfile "$1" | tar -x --keep-directory-symlink --no-same-owner -C "$2" \
     --exclude='./usr/share/doc/*' --exclude='./usr/share/man/*' --exclude='./usr/share/locale/*'
 }
+
+# Links that a package's installation would make by update-alternatives: OpenCV asks for libblas.so.3, which lies in
+# blas/, beside those that other implementations would bring.
+choose_alternatives() {  # DIR
+  local library
+  for library in "$1"/usr/lib/"$triplet"/{blas,lapack}/lib*.so.3; do
+    [ ! -e "$library" ] || ln -snfr "$library" "$1/usr/lib/$triplet/${library##*/}"
+  done
+}

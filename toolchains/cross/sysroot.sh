@@ -1,14 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # usage: sysroot.sh ARCH: headers and libraries to build against, in $ZONEPACK_SYSROOTS/sysroot-ARCH
-# (default build/): the -dev packages of packages.txt for that architecture. Kept while the list is the same.
+# (default build/): the -dev packages of packages.txt for that architecture. Kept while the list and what makes it of
+# them are the same.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 . toolchains/cross/debian.sh
 use_arch "$1"
 
 mapfile -t packages < <(printf '%s\n' libc6-dev libstdc++-12-dev linux-libc-dev; grep -e '-dev$' toolchains/packages.txt)
-if diff -q <(printf '%s\n' "${packages[@]}") "$sysroot/.packages" >/dev/null 2>&1; then
+made_of() { printf '%s\n' "${packages[@]}"; cat toolchains/cross/{debian,sysroot}.sh; }
+if diff -q <(made_of) "$sysroot/.made_of" >/dev/null 2>&1; then
   echo "sysroot: $sysroot is there"
   exit 0
 fi
@@ -24,7 +26,8 @@ for deb in $debs; do
 done
 # libz.so -> /lib/aarch64-linux-gnu/libz.so.1 would point into the host.
 find "$new" -type l -lname '/*' | while read -r link; do ln -snfr "$new$(readlink "$link")" "$link"; done
-printf '%s\n' "${packages[@]}" >"$new/.packages"
+choose_alternatives "$new"
+made_of >"$new/.made_of"
 rm -rf "$sysroot" "$apt_dir/cache/archives"
 mv "$new" "$sysroot"
 echo "sysroot: $(wc -w <<<"$debs") packages, $(du -sh "$sysroot" | cut -f1) in $sysroot"

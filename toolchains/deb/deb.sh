@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # Sourced by toolchains/run: Debian packages, from a cross build or for the machine that builds them.
 
-make_packages() {  # BUILD ARCH OWNERS [runtime]
+make_packages() {  # BUILD ARCH OWNERS
   stage "packages: Debian $2"
   toolchains/deb/packages.sh "$@"
-  tests/system/debs_test.sh "$1" "$3" "${@:4}"
+  tests/system/debs_test.sh "$1" "$3"
 }
 
 # What dpkg knows of this machine's own libraries, as a sysroot lists it.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# usage: packages.sh BUILD ARCH OWNERS [runtime]: BUILD/*.deb from the build there (target `installed`; `zoned` and
-# `zonectl` for the runtime alone), and their sizes. OWNERS/.shlibs says which package owns a library, in lines of
+# usage: packages.sh BUILD ARCH OWNERS [robot]: BUILD/*.deb from the build there (target `installed`; `zoned`,
+# `zonectl` and `zoneloc` for the robot's packages alone), and their sizes. OWNERS/.shlibs says which package owns a library, in lines of
 # "library version package (>= ...)". The same bytes for the same commit (or SOURCE_DATE_EPOCH), built anywhere.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -82,10 +82,6 @@ BODY
 bytes=$(stat -c %s "$build/packages/zonepack-runtime/usr/bin/zoned")
 echo "zoned: $bytes bytes stripped, of at most $most_zoned_bytes"
 ((bytes <= most_zoned_bytes))
-[ "${4:-}" != runtime ] || exit 0
-
-# Who builds against the library needs what it was built against, without test libraries and compilers.
-headers=$(grep -e '-dev$' toolchains/packages.txt | grep -vE 'gtest|gmock|benchmark' | paste -sd, | sed 's/,/, /g')
 if [ -x "$build/bin/zoneloc" ]; then
   package localizer misc "" "zone-wise 3D map memory for mobile robots: camera localizer" <<'BODY'
 zoneloc finds the robot's pose in the images of a camera, among the rooms that
@@ -93,6 +89,10 @@ zoned holds in memory, and gives it to zoned. It needs OpenCV; zoned and
 zonectl do not.
 BODY
 fi
+[ "${4:-}" != robot ] || exit 0
+
+# Who builds against the library needs what it was built against, without test libraries and compilers.
+headers=$(grep -e '-dev$' toolchains/packages.txt | grep -vE 'gtest|gmock|benchmark' | paste -sd, | sed 's/,/, /g')
 package tools misc "" "zone-wise 3D map memory for mobile robots: packing of maps" <<'BODY'
 zonepack cuts a SLAM map into zones, such as rooms and corridors, and writes
 one compressed pack per zone, for zoned to load on the robot.

@@ -1,37 +1,40 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# usage: guest.sh FLAVOUR DEB: build/robot/FLAVOUR/base.cpio.gz: a small Linux with our runtime package unpacked:
+# usage: guest.sh FLAVOUR DEB...: build/robot/FLAVOUR/base.cpio.gz: a small Linux with packages of ours unpacked:
 # busybox, iproute2, can-utils, gpiod's tools, the libraries that all these need, kernel modules, /init.
-# A library that neither the package's Depends nor the tools bring is missing, and that is an error.
+# A library that neither a package's Depends nor the tools bring is missing, and that is an error.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 . toolchains/cross/debian.sh
-flavour=$1 deb=$2
-use_arch "$(dpkg-deb -f "$deb" Architecture)"
+flavour=$1 debs=("${@:2}")
+use_arch "$(dpkg-deb -f "${debs[0]}" Architecture)"
 kernel=$roots/kernel-$flavour
 guest=$roots/guest-$arch
 out=build/robot/$flavour
 root=$out/root
 modules="configfs can can-raw can-bcm can-gw vcan can-dev sja1000 kvaser_pci ctucanfd ctucanfd_pci gpio-irqsim gpio-sim
-  virtio_pci virtio_blk crc32c_generic ext4 softdog"
+  virtio_pci virtio_blk crc32c_generic ext4 softdog vivid"
 programs="bin/busybox bin/dash bin/ip bin/candump bin/cansend bin/cangen bin/canplayer bin/log2asc bin/gpiodetect
   bin/gpioinfo bin/gpioget bin/gpioset bin/gpiomon"
 
-# 1. What runs there, from Debian: the tools, and what our package depends on.
-mapfile -t packages < <(printf '%s\n' busybox-static dash iproute2 can-utils gpiod; dpkg-deb -f "$deb" Depends | tr ',' '\n' | awk '{ print $1 }')
-if ! diff -q <(printf '%s\n' "${packages[@]}") "$guest/.packages" >/dev/null 2>&1; then
-  debs=$(fetch_closure "${packages[@]}")
+# 1. What runs there, from Debian: the tools, and what our packages depend on.
+depends() { for deb in "${debs[@]}"; do dpkg-deb -f "$deb" Depends; echo ,; done | tr -d '\n' | tr ',' '\n' | awk 'NF { print $1 }'; }
+mapfile -t packages < <(printf '%s\n' busybox-static dash iproute2 can-utils gpiod; depends | sort -u)
+made_of() { printf '%s\n' "${packages[@]}"; cat toolchains/cross/debian.sh; }
+if ! diff -q <(made_of) "$guest/.made_of" >/dev/null 2>&1; then
+  fetched=$(fetch_closure "${packages[@]}")
   new_tree "$guest.new"
-  for package in $debs; do unpack "$package" "$guest.new"; done
-  printf '%s\n' "${packages[@]}" >"$guest.new/.packages"
+  for package in $fetched; do unpack "$package" "$guest.new"; done
+  choose_alternatives "$guest.new"
+  made_of >"$guest.new/.made_of"
   rm -rf "$guest"
   mv "$guest.new" "$guest"
 fi
 
-# 2. Our package, the programs, and the libraries of both.
+# 2. Our packages, the programs, and the libraries of both.
 new_tree "$root"
 mkdir -p "$root"/{dev,proc,sys,tmp,etc,run,payload,data,modules}
-unpack "$deb" "$root"
+for deb in "${debs[@]}"; do unpack "$deb" "$root"; done
 for program in $programs; do cp -L "$guest/$program" "$root/usr/bin/"; done
 ln -s dash "$root/bin/sh"
 missing=0

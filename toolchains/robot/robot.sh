@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Sourced by toolchains/run: the virtual robot, a QEMU machine with Debian's kernel and our package.
 
-device_programs=(gpio_line_contract can_bus_contract can_frames)  # run there, on lines and buses of a kernel
+# Run there, on lines, buses and cameras of a kernel.
+device_programs=(gpio_line_contract can_bus_contract can_frames video_device_contract hold_thread)
 
 set_flavour() {  # arm64|armhf|rt-arm64: sets arch, flavour (Debian's name of the kernel)
   case $1 in
@@ -19,7 +20,7 @@ make_guest() {
   toolchains/robot/kernel.sh "$flavour"
   rm -rf "$payload"
   mkdir -p "$payload/tests" "$payload/data"
-  toolchains/robot/guest.sh "$flavour" build/"$arch"/zonepack-runtime_*.deb
+  toolchains/robot/guest.sh "$flavour" build/"$arch"/zonepack-{runtime,localizer}_*.deb
   cp tests/system/guest/*.sh "$payload/tests/"
   cp -r tests/data/scenario1_loop "$payload/data/"
   mkdir "$payload/bin"
@@ -36,6 +37,15 @@ make_guest() {
   "$host/zoned" replay --config config/agilex.yaml --map "$payload/map" --can $data/can0.log \
     --corrections $data/corrections.txt --truth $data/base_groundtruth.txt --max-signatures 50 \
     --events "$payload/events.jsonl" >/dev/null
+  # The first half minute of the drive with its camera: what both ends localize.
+  mkdir "$payload/loop"
+  awk '/^\(/ { split($1, t, /[()]/); if (t[2] < 1718021630) print }' $data/can0.log >"$payload/loop/can0.log"
+  awk '$1 < 1718021630' $data/rgb.txt >"$payload/loop/rgb.txt"
+  cp $data/base_groundtruth.txt $data/calibration.yaml "$payload/loop/"
+  rm -rf "$payload/data/scenario1_loop/rgb"
+  mkdir "$payload/loop/rgb"
+  awk '!/^#/ { print $2 }' "$payload/loop/rgb.txt" | while read -r image; do cp "$data/$image" "$payload/loop/$image"; done
+  tests/system/guest/closed_loop.sh "$host/zoneloc" config/agilex.yaml "$payload" "$payload/loop" >/dev/null
 }
 
 options_of() { sed -n 's/^# boot: //p' "tests/system/guest/$1.sh"; }  # TEST
@@ -86,9 +96,9 @@ run_guest_tests() {  # [TEST...], all by default
 prepare_robot() {  # arm64|armhf|rt-arm64
   set_flavour "$1" || exit 2
   ready
-  build test --target zonepack zoned
-  cross_build "$arch" zoned zonectl "${device_programs[@]}"
-  toolchains/deb/packages.sh "build/$arch" "$arch" "$sysroot" runtime
+  build test --target zonepack zoned zoneloc
+  cross_build "$arch" zoned zonectl zoneloc "${device_programs[@]}"
+  toolchains/deb/packages.sh "build/$arch" "$arch" "$sysroot" robot
   make_guest
 }
 

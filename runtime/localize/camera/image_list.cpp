@@ -11,6 +11,7 @@
 
 #include "platform/base/counted.hpp"
 #include "platform/base/file_kind.hpp"
+#include "platform/base/utf8.hpp"
 #include "runtime/run/stamp_text.hpp"
 
 namespace zonepack::localize {
@@ -42,7 +43,7 @@ class ListReader {
       : file_(file), folder_(fs::path(file).parent_path()) {}
 
   Outcome<void> take(std::string_view line, std::size_t number) {
-    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+    if (number == 1) line = without_byte_order_mark(line);
     line = trimmed(line);
     if (line.empty() || line.front() == '#' || line.front() == '%') return {};
     const std::size_t end = std::min(line.find_first_of(kBetweenWords), line.size());

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string>
 
-#include "runtime/live/histogram.hpp"
 #include "runtime/localize/query/query_result.hpp"
 #include "runtime/protocol/protocol_generated.h"
+#include "runtime/run/histogram.hpp"
 
 namespace zonepack::localize {
 

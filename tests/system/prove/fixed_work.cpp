@@ -11,7 +11,7 @@
 
 #include "platform/clock.hpp"
 #include "platform/realtime.hpp"
-#include "runtime/live/histogram.hpp"
+#include "runtime/run/histogram.hpp"
 
 namespace {
 

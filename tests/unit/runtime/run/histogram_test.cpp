@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/live/histogram.hpp"
+#include "runtime/run/histogram.hpp"
 
 #include <gtest/gtest.h>
 
