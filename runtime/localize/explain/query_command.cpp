@@ -24,9 +24,8 @@
 namespace zonepack::localize {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 // How well a person knows where the robot stands: one standard deviation.
-constexpr double kNear_m = 0.3, kNear_rad = 5 * kDegree;
+constexpr double kNear_m = 0.3, kNear_rad = 5 * kDegreeInRad;
 
 std::string digits_of(double value, int digits) {
   char text[40];
@@ -36,7 +35,7 @@ std::string digits_of(double value, int digits) {
 
 std::string pose_text(const Pose2& pose) {
   return digits_of(pose.x_m, 3) + "," + digits_of(pose.y_m, 3) + "," +
-         digits_of(pose.yaw_rad / kDegree, 2);
+         digits_of(pose.yaw_rad / kDegreeInRad, 2);
 }
 
 struct Answer {
@@ -57,7 +56,7 @@ std::string json_of(const Answer& answer) {
   };
   add("reason", json_quoted(to_string(r.reason)));
   add("why", json_quoted(answer.why));
-  const auto degrees = [](double rad) { return digits_of(rad / kDegree, 3); };
+  const auto degrees = [](double rad) { return digits_of(rad / kDegreeInRad, 3); };
   add("pose", !r.found ? "null"
                        : "{\"x_m\": " + digits_of(r.pose.x_m, 4) +
                              ", \"y_m\": " + digits_of(r.pose.y_m, 4) +
@@ -101,7 +100,7 @@ std::string text_of(const Answer& answer) {
   if (r.accepted) {
     out = pose_text(r.pose) + " (x, y in metres, yaw in degrees), +- " +
           digits_of(100 * position_sigma_m(r.covariance), 1) + " cm and " +
-          digits_of(std::sqrt(r.covariance.yaw_yaw) / kDegree, 2) + " degrees, in sight of " +
+          digits_of(std::sqrt(r.covariance.yaw_yaw) / kDegreeInRad, 2) + " degrees, in sight of " +
           answer.best_zone + "\n";
   } else {
     out = std::string("no pose: ") + to_string(r.reason) + "\n";

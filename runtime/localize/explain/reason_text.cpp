@@ -12,8 +12,6 @@
 namespace zonepack::localize {
 namespace {
 
-constexpr double kDegreeInRad = std::numbers::pi / 180;
-
 std::string rounded(double value, int digits) {
   char text[40];
   std::snprintf(text, sizeof text, "%.*f", digits, value);

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <numbers>
 #include <string>
 
 #include "runtime/localize/camera/camera_model.hpp"
 #include "runtime/localize/query/query_result.hpp"
 
 namespace zonepack::localize {
+
+inline constexpr double kDegreeInRad = std::numbers::pi / 180;
 
 // What was asked for, for the words of reason_text().
 struct QueryAsked {

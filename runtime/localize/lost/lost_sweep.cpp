@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "runtime/odometry/se2.hpp"
@@ -96,11 +97,11 @@ ZoneId LostSweep::next(std::int64_t now_ns, const std::function<bool(ZoneId)>& r
 // Once the whole map was seen, every second look goes to where the best places are.
 ZoneId LostSweep::choose(const std::function<bool(ZoneId)>& resident) const {
   if (looked_at() == order_.size() && !led_) {
-    std::vector<ZoneId> leading = search_.leading_zones();
-    leading.resize(std::min(leading.size(), kMostLeading));
-    const auto zone =
-        std::find_if(leading.begin(), leading.end(), [&](ZoneId one) { return may_try(one); });
-    if (zone != leading.end()) return *zone;
+    const std::vector<ZoneId> leading = search_.leading_zones();
+    const std::size_t count = std::min(leading.size(), kMostLeading);
+    for (const ZoneId zone : std::span(leading).first(count)) {
+      if (may_try(zone)) return zone;
+    }
   }
   // Those that were looked at least often; among these what is in memory.
   ZoneId best = kNoZone;

@@ -15,7 +15,7 @@
 namespace zonepack::localize {
 namespace {
 
-constexpr const char* kProgram = "zoneloc check";
+constexpr const char* kCheckProgram = "zoneloc check";
 constexpr int kMostRuns = 8;
 
 struct Checked {
@@ -43,7 +43,7 @@ Outcome<Checked> check(const LoopArguments& arguments) {
   std::vector<CameraTrait> wrong;
   bool settled = false;
   while (!settled && out.runs < kMostRuns) {
-    const auto lessons = drive_for_lessons(arguments, kProgram, total);
+    const auto lessons = drive_for_lessons(arguments, kCheckProgram, total);
     if (!lessons) return lessons.error();
     const CalibrationReport report = lessons->watch.report();
     if (out.runs++ == 0) {
@@ -134,7 +134,7 @@ Outcome<void> check_and_write(const LoopArguments& arguments) {
 int run_check(const LoopArguments& arguments) {
   auto done = check_outputs({{"--json", arguments.json, true}});
   if (done) done = check_and_write(arguments);
-  return done ? 0 : report_failure(kProgram, done.error());
+  return done ? 0 : report_failure(kCheckProgram, done.error());
 }
 
 }  // namespace zonepack::localize

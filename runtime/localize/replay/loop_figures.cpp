@@ -17,8 +17,6 @@ double turn_deg(double a_rad, double b_rad) {
   return std::abs(std::remainder(a_rad - b_rad, 2 * std::numbers::pi)) * 180 / std::numbers::pi;
 }
 
-double apart_m(const Pose2& a, const Pose2& b) { return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m); }
-
 // The longest time without a fix.
 double longest_gap_s(const CameraLoop& loop) {
   std::int64_t last = loop.start_ns(), longest = 0;
@@ -79,6 +77,10 @@ void HeadingWatch::after_cycle(const CycleRecord& cycle, const MapVersion&) noex
 
 std::optional<Spread> HeadingWatch::errors_deg() const {
   return spread_of({errors_deg_.begin(), errors_deg_.end()});
+}
+
+double apart_m(const Pose2& a, const Pose2& b) noexcept {
+  return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m);
 }
 
 bool is_right(const Pose2& fix, const Pose2& truth) noexcept {

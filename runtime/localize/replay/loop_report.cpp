@@ -34,8 +34,6 @@ double seconds(std::int64_t t_ns, const CameraLoop& loop) {
   return static_cast<double>(t_ns - loop.start_ns()) * 1e-9;
 }
 
-double apart_m(const Pose2& a, const Pose2& b) { return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m); }
-
 // "few_inliers" for people.
 std::string in_words(std::string reason) {
   std::ranges::replace(reason, '_', ' ');

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "tests/support/count_of.hpp"
 #include "tests/support/xml_check.hpp"
 
 namespace zonepack::report {
@@ -23,22 +24,16 @@ FloorPlan room_with_dots() {
   return plan;
 }
 
-std::size_t count(const std::string& text, const std::string& word) {
-  std::size_t found = 0;
-  for (std::size_t at = 0; (at = text.find(word, at)) != text.npos; at += word.size()) ++found;
-  return found;
-}
-
 TEST(FloorPlanDots, CarryTheirMomentAndTheirHint) {
   const std::string text = draw_floor_plan(room_with_dots()).file_text();
   EXPECT_EQ(XmlCheck::problem_in(text), "");
-  EXPECT_EQ(count(text, "data-t=\"500\""), 1U);   // 0.5 s
-  EXPECT_EQ(count(text, "data-t=\"2000\""), 1U);  // 2 s
-  EXPECT_EQ(count(text, "<title>a&lt;b</title>"), 1U);
+  EXPECT_EQ(count_of(text, "data-t=\"500\""), 1U);   // 0.5 s
+  EXPECT_EQ(count_of(text, "data-t=\"2000\""), 1U);  // 2 s
+  EXPECT_EQ(count_of(text, "<title>a&lt;b</title>"), 1U);
   // A dot without a place is counted in the legend and not drawn.
-  EXPECT_EQ(count(text, "nowhere"), 0U);
-  EXPECT_EQ(count(text, ">fix (2)<"), 1U);
-  EXPECT_EQ(count(text, ">other (1)<"), 1U);
+  EXPECT_EQ(count_of(text, "nowhere"), 0U);
+  EXPECT_EQ(count_of(text, ">fix (2)<"), 1U);
+  EXPECT_EQ(count_of(text, ">other (1)<"), 1U);
 }
 
 TEST(FloorPlanDots, LieAboveThoseOfEarlierLayers) {
@@ -48,15 +43,15 @@ TEST(FloorPlanDots, LieAboveThoseOfEarlierLayers) {
 
 TEST(FloorPlanDots, AreSmallerOnAPhone) {
   // Radius 3, and half of it.
-  EXPECT_EQ(count(draw_floor_plan(room_with_dots()).file_text(), "r=\"3\""), 1U);
-  EXPECT_EQ(count(draw_floor_plan(narrowed(room_with_dots())).file_text(), "r=\"1.5\""), 1U);
+  EXPECT_EQ(count_of(draw_floor_plan(room_with_dots()).file_text(), "r=\"3\""), 1U);
+  EXPECT_EQ(count_of(draw_floor_plan(narrowed(room_with_dots())).file_text(), "r=\"1.5\""), 1U);
 }
 
 TEST(FloorPlanDots, OfNoneTheDrawingHoldsNothing) {
   FloorPlan plan = room_with_dots();
   plan.dots.clear();
   // One clip for zones and routes; an empty one for dots and faults would be a second.
-  EXPECT_EQ(count(draw_floor_plan(plan).file_text(), "overflow=\"hidden\""), 1U);
+  EXPECT_EQ(count_of(draw_floor_plan(plan).file_text(), "overflow=\"hidden\""), 1U);
 }
 
 }  // namespace

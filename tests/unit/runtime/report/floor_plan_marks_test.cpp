@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "tests/support/count_of.hpp"
 #include "tests/support/xml_check.hpp"
 
 namespace zonepack::report {
@@ -17,12 +18,6 @@ FloorPlan one_room(double width, double height) {
                         .hint = "",
                         .polygon = {{{0, 0}, {width, 0}, {width, height}, {0, height}}, {}}});
   return plan;
-}
-
-std::size_t count(const std::string& text, const std::string& word) {
-  std::size_t found = 0;
-  for (std::size_t at = 0; (at = text.find(word, at)) != text.npos; at += word.size()) ++found;
-  return found;
 }
 
 TEST(FloorPlanMarks, HoldTheGridInsideTheDrawing) {
@@ -46,21 +41,21 @@ TEST(FloorPlanMarks, TurnTheGridWithTheMap) {
 TEST(FloorPlanMarks, LeaveTheGridsLightnessToThePage) {
   FloorPlan plan = one_room(10, 8);
   plan.raster = PlanRaster{"abc", {{0, 0}, {10, 8}}};
-  EXPECT_EQ(count(draw_floor_plan(plan).file_text(), "<image class=\"ground\""), 1U);
+  EXPECT_EQ(count_of(draw_floor_plan(plan).file_text(), "<image class=\"ground\""), 1U);
   Svg photo(10, 10);
   photo.image({0, 0}, 10, 10, false, "abc");
-  EXPECT_EQ(count(photo.file_text(), "class=\"ground\""), 0U);
+  EXPECT_EQ(count_of(photo.file_text(), "class=\"ground\""), 0U);
 }
 
 TEST(FloorPlanMarks, StandUprightOnAPhone) {
   const FloorPlan tall = one_room(5, 20);
-  EXPECT_EQ(count(draw_floor_plan(tall).file_text(), "down: x"), 1U);
-  EXPECT_EQ(count(draw_floor_plan(narrowed(tall)).file_text(), "up: y"), 1U);
+  EXPECT_EQ(count_of(draw_floor_plan(tall).file_text(), "down: x"), 1U);
+  EXPECT_EQ(count_of(draw_floor_plan(narrowed(tall)).file_text(), "up: y"), 1U);
 }
 
 TEST(FloorPlanMarks, DrawFaultsAndOrphansInRedWithNumbers) {
   FloorPlan plan = one_room(10, 8);
-  const std::size_t before = count(draw_floor_plan(plan).file_text(), to_hex(kLimit));
+  const std::size_t before = count_of(draw_floor_plan(plan).file_text(), to_hex(kLimit));
   EXPECT_EQ(before, 0u);
   plan.faults.push_back({.number = "1",
                          .hint = "overlap",
@@ -76,7 +71,7 @@ TEST(FloorPlanMarks, DrawFaultsAndOrphansInRedWithNumbers) {
   const std::string text = draw_floor_plan(plan).file_text();
   EXPECT_EQ(XmlCheck::problem_in(text), "");
   // Area and its outline, a line, a place, two numbers, the orphan, and two marks of the legend.
-  EXPECT_EQ(count(text, to_hex(kLimit)), 9u);
+  EXPECT_EQ(count_of(text, to_hex(kLimit)), 9u);
   EXPECT_NE(text.find(">2</text>"), text.npos);
   EXPECT_NE(text.find("<title>signature 7</title>"), text.npos);
 }
