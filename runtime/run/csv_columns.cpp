@@ -49,10 +49,10 @@ class Reader {
       if (line.empty() || line.starts_with('#')) continue;
       const std::vector<std::string_view> cells = split_cells(line);
       if (width_ == 0) {
-        if (const auto known = header(cells); !known) return known;
+        if (auto known = header(cells); !known) return known;
         continue;
       }
-      if (const auto read = row(cells); !read) return read;
+      if (auto read = row(cells); !read) return read;
       if (const auto taken = take(values_); !taken) return at(taken.error().message);
       empty = false;
     }

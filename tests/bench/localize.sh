@@ -118,7 +118,7 @@ prior_rows hospital-small $s2 0.61 1.5 9
 for mission in $s1 $s2; do
   for map in hospital hospital-small; do
     name=unseen.$map.${mission%%_*}
-    queries "$name" $map $mission change=boxes:0.15+drift pitch=0.5 seed=7
+    queries "$name" "$map" "$mission" change=boxes:0.15+drift pitch=0.5 seed=7
     target=0.83
     [ $map = hospital ] || target=0.57
     right=$(value "$name" .right)
@@ -131,7 +131,7 @@ tilt_wrong=0 tilt_least=1
 for tilt in roll=1 roll=-1 pitch=1 pitch=-1; do
   for mission in $s1 $s2; do
     name=tilt.$tilt.${mission%%_*}
-    queries "$name" hospital $mission $tilt
+    queries "$name" hospital "$mission" "$tilt"
     tilt_wrong=$((tilt_wrong + $(value "$name" .wrong)))
     tilt_least=$(jq -n "[$tilt_least, $(value "$name" .right)] | min")
   done
@@ -144,7 +144,7 @@ row "camera tilted by 1 degree, hospital, worst of 8" - ">= 0.90, <= 1 wrong" "$
 while read -r change least; do
   for map in hospital hospital-small; do
     name=change.$map.$change
-    queries "$name" $map $s1 change=$change
+    queries "$name" "$map" "$s1" change="$change"
     right=$(value "$name" .right) wrong=$(value "$name" .wrong)
     row "$change, $map s1" - ">= $least, 0 wrong" "$(two "$right"), $wrong wrong" "$right >= $least" "$wrong == 0"
   done

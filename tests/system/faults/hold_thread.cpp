@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -38,13 +39,30 @@ pid_t find_thread(const std::string& process, const std::string& name) {
   return 0;
 }
 
-// The next thread that the process makes. Looked for without a pause: it may end in a millisecond.
+// A signal that a traced thread was about to get reaches it; what stopped it otherwise is over.
+void let_go_on(pid_t thread, int status) {
+  const bool signal = WIFSTOPPED(status) && status >> 16 == 0 && WSTOPSIG(status) != SIGTRAP;
+  ::ptrace(PTRACE_CONT, thread, nullptr, signal ? WSTOPSIG(status) : 0);
+}
+
+// The next thread that the process makes, stopped before its first instruction: it may end in a
+// millisecond. Every thread that could make it is traced from now on.
 pid_t wait_for_thread(const std::string& process) {
   const std::set<pid_t> before = threads_of(process);
+  for (const pid_t thread : before) {
+    ::ptrace(PTRACE_SEIZE, thread, nullptr, PTRACE_O_TRACECLONE | PTRACE_O_TRACESYSGOOD);
+  }
   const std::time_t until = std::time(nullptr) + 10;
   while (std::time(nullptr) < until) {
-    for (const pid_t thread : threads_of(process)) {
-      if (!before.contains(thread)) return thread;
+    int status = 0;
+    const pid_t thread = ::waitpid(-1, &status, __WALL | WNOHANG);
+    if (thread < 0) return 0;
+    if (thread == 0) {
+      ::usleep(1000);
+    } else if (!before.contains(thread)) {
+      return WIFSTOPPED(status) ? thread : 0;
+    } else {
+      let_go_on(thread, status);
     }
   }
   return 0;
@@ -72,24 +90,29 @@ bool run_to_a_file(pid_t thread) {
 int main(int argc, char** argv) {
   if (argc != 4) return std::fputs("usage: hold_thread PID NAME SECONDS\n", stderr), 2;
   pid_t thread = find_thread(argv[1], argv[2]);
-  const bool comes_later = thread == 0;
-  if (comes_later) thread = wait_for_thread(argv[1]);
-  if (thread == 0) return std::fprintf(stderr, "hold_thread: no thread %s\n", argv[2]), 1;
-  if (::ptrace(PTRACE_SEIZE, thread, nullptr, PTRACE_O_TRACESYSGOOD) != 0) {
-    return std::perror("hold_thread: ptrace"), 77;
-  }
   int status = 0;
-  if (::ptrace(PTRACE_INTERRUPT, thread, nullptr, nullptr) != 0 ||
-      ::waitpid(thread, &status, __WALL) != thread) {
+  if (thread == 0) {
+    thread = wait_for_thread(argv[1]);
+    if (thread == 0) return std::fprintf(stderr, "hold_thread: no thread %s\n", argv[2]), 1;
+    if (!run_to_a_file(thread)) {
+      return std::fprintf(stderr, "hold_thread: %s has ended\n", argv[2]), 1;
+    }
+  } else if (::ptrace(PTRACE_SEIZE, thread, nullptr, PTRACE_O_TRACESYSGOOD) != 0) {
+    return std::perror("hold_thread: ptrace"), 77;
+  } else if (::ptrace(PTRACE_INTERRUPT, thread, nullptr, nullptr) != 0 ||
+             ::waitpid(thread, &status, __WALL) != thread) {
     return std::perror("hold_thread: stop"), 1;
   }
-  if (comes_later && !run_to_a_file(thread)) {
-    return std::fprintf(stderr, "hold_thread: %s has ended\n", argv[2]), 1;
-  }
   // A process has ended for its parent only when its traced threads are reaped.
-  for (int turns = static_cast<int>(std::atof(argv[3]) * 100); turns > 0; --turns) {
-    if (::waitpid(thread, &status, __WALL | WNOHANG) != 0) return 0;
-    ::usleep(10'000);
+  for (int turns = static_cast<int>(std::atof(argv[3]) * 100); turns > 0;) {
+    const pid_t other = ::waitpid(-1, &status, __WALL | WNOHANG);
+    if (other < 0 || (other == thread && !WIFSTOPPED(status))) return 0;
+    if (other > 0 && other != thread) {
+      let_go_on(other, status);
+    } else {
+      --turns;
+      ::usleep(10'000);
+    }
   }
   ::ptrace(PTRACE_DETACH, thread, nullptr, nullptr);
   return 0;
