@@ -10,7 +10,7 @@
 namespace zonepack::localize {
 namespace {
 
-constexpr int kBandRows = 64;
+constexpr int kBandRows = 32;
 constexpr int kSobel = 3;
 
 }  // namespace
@@ -18,7 +18,7 @@ constexpr int kSobel = 3;
 void BandedCorners::measure(const cv::Mat& image) {
   strength_.create(image.size(), CV_32FC1);
   // The sums over a block reach this far; what a band lacks at its edges is in its neighbours.
-  const int reach = settings_.block_px;
+  const int reach = settings_.block_px / 2 + 1;
   for (int first = 0; first < image.rows; first += kBandRows) {
     const int last = std::min(first + kBandRows, image.rows);
     const int from = std::max(first - reach, 0);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "runtime/client/signature_view.hpp"
 #include "runtime/odometry/se2.hpp"
@@ -35,13 +36,17 @@ Outcome<MapError> MapError::read(const MapFolder& map) {
 }
 
 std::optional<Pose2> MapError::in_map(const Pose2& truth) const noexcept {
+  // A map bends from one pass of its drive to the next, and where two passes went opposite ways
+  // the camera sees what one of them saw: a radian counts as a metre.
   const Place* nearest = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const Place& place : places_) {
     const double dx = place.T_world_base.x_m - truth.x_m, dy = place.T_world_base.y_m - truth.y_m;
-    const double d2 = dx * dx + dy * dy;
-    if (d2 < least) {
-      least = d2;
+    const double turned =
+        std::remainder(place.T_world_base.yaw_rad - truth.yaw_rad, 2 * std::numbers::pi);
+    const double apart = std::hypot(dx, dy) + std::abs(turned);
+    if (apart < least) {
+      least = apart;
       nearest = &place;
     }
   }

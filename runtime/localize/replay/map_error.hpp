@@ -23,7 +23,8 @@ class MapError {
 
   bool empty() const noexcept { return places_.empty(); }
 
-  // Where the map has what is really at `truth`, by the signature that was really nearest.
+  // Where the map has what is really at `truth`, by the signature that was really nearest, in
+  // place and in where it looked.
   std::optional<Pose2> in_map(const Pose2& truth) const noexcept;
 
  private:
