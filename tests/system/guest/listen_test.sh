@@ -14,7 +14,7 @@ zoned listen --config "$config" --can socketcan:vcan0 --duration 6 --json seen.j
   fail "status $?: $(cat words)"
 wait $player || fail "canplayer: status $?"
 for wheel in left right; do
-  rate=$(sed "s/.*\"key\": *\"$wheel\"//" seen.json | tr ',' '\n' | sed -n 's/.*"rate_hz": *\([0-9]*\).*/\1/p' | head -1)
+  rate=$(sed -n "/\"key\": \"$wheel\"/s/.*\"rate_hz\": \([0-9]*\).*/\1/p" seen.json)
   [ "${rate:-0}" -ge 48 ] && [ "$rate" -le 52 ] || fail "$wheel wheel at $rate Hz, sent at 50: $(cat seen.json)"
 done
 grep -q "samples .*, 0 refused" table || fail "$(cat table)"
