@@ -26,7 +26,7 @@ struct Command {
     // Of a localizer that searches the map:
     kLost,     // the pose is wrong or there is none: it is given up until fixes agree again
     kSeek,     // zone: while lost, the one to have in memory next; kNoZone: none
-    kAskTurn,  // the robot is asked to turn on the spot, so that a place can be told from another
+    kAskTurn,  // the robot is asked to turn on the spot: new views set similar places apart
   };
   static constexpr std::size_t kMostRoute = 64;
 

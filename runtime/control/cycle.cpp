@@ -303,7 +303,7 @@ Cycle::Wanted Cycle::list_wanted() const noexcept {
   return wanted;
 }
 
-// What a localizer can use besides the zones for the robot's own way.
+// What a localizer can use in addition to the zones on the robot's own way.
 void Cycle::want_view(Wanted& wanted) const noexcept {
   if (view_m_ <= 0 || !state_.pose.valid || state_.pose.t_ns > view_until_ns_) return;
   const ZonesInView view(graph_, state_.pose.T_map_base, tracker_.pose_zone(), view_m_);

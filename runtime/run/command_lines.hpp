@@ -10,7 +10,7 @@
 #include "platform/base/failure.hpp"
 #include "runtime/control/command.hpp"
 
-// What a localizer commanded besides its fixes, in the file of its fixes. A line is
+// Commands of a localizer to zoned, in the file of its fixes. A line is
 //
 //   # command RECEIVED WORD [ZONE]
 //

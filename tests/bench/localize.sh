@@ -105,7 +105,7 @@ prior_rows() { # MAP MISSION TARGET P50_CM P95_CM
     "$(printf '%.2f, %.2f cm' "$(value "$name" .any_way_p50_cm)" "$(value "$name" .any_way_p95_cm)")"
   row "  false priors accepted, of $trials" - "<= 1" "$(value "$name" .false_accepted)" \
     "$(value "$name" .false_accepted) <= 1"
-  row "  query p95; besides the detector" "82 to 1515 ms" "<= 20; 8 ms" \
+  row "  query p95; without the detector" "82 to 1515 ms" "<= 20; 8 ms" \
     "$(printf '%.1f; %.1f ms' "$(value "$name" .query_p95_ms)" "$(value "$name" .rest_p95_ms)")" \
     "$(value "$name" .query_p95_ms) <= 20" "$(value "$name" .rest_p95_ms) <= 8"
 }

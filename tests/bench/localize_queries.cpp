@@ -31,6 +31,8 @@
 #include "runtime/localize/camera/image_list.hpp"
 #include "runtime/localize/query/localizer.hpp"
 #include "runtime/localize/query/map_folder.hpp"
+#include "runtime/localize/replay/map_error.hpp"
+#include "runtime/odometry/poses_apart.hpp"
 #include "runtime/odometry/se2.hpp"
 #include "runtime/pack_format/file/pack_reader.hpp"
 #include "tests/support/image_changes.hpp"
@@ -61,8 +63,6 @@ std::vector<TruePose> read_truth(const std::string& file) {
   return out;
 }
 
-double turn(double from, double to) { return std::remainder(to - from, 2 * std::numbers::pi); }
-
 Pose2 truth_at(const std::vector<TruePose>& truth, double t_s) {
   const auto after = std::lower_bound(truth.begin(), truth.end(), t_s,
                                       [](const TruePose& a, double t) { return a.t_s < t; });
@@ -73,55 +73,13 @@ Pose2 truth_at(const std::vector<TruePose>& truth, double t_s) {
   const double part = (t_s - a.t_s) / (b.t_s - a.t_s);
   return {a.pose.x_m + part * (b.pose.x_m - a.pose.x_m),
           a.pose.y_m + part * (b.pose.y_m - a.pose.y_m),
-          a.pose.yaw_rad + part * turn(a.pose.yaw_rad, b.pose.yaw_rad)};
+          a.pose.yaw_rad + part * turn_rad(a.pose.yaw_rad, b.pose.yaw_rad)};
 }
-
-double distance(const Pose2& a, const Pose2& b) { return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m); }
 
 double percentile(std::vector<double> values, double p) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(p * static_cast<double>(values.size() - 1) + 0.5)];
-}
-
-// Of a signature: where the map has it, and where it was in truth.
-struct MapError {
-  Pose2 in_map, in_truth;
-};
-
-Pose2 pose_of(const RigidTransform& m) {
-  return {m[3], m[7], std::atan2(static_cast<double>(m[4]), static_cast<double>(m[0]))};
-}
-
-std::vector<MapError> read_map_errors(const MapFolder& map) {
-  std::vector<MapError> out;
-  for (const CatalogZone& zone : map.catalog.zones) {
-    const auto pack = PackReader::open(map.catalog.folder + "/" + zone.pack);
-    if (!pack) continue;
-    const auto decoded = DecodedPack::decode(*pack, kCoreOnly);
-    if (!decoded) continue;
-    const ZoneSignatures signatures(decoded->view());
-    for (std::uint32_t i = 0; i < signatures.size(); ++i) {
-      const auto here = signatures[i].T_map_base(), truth = signatures[i].T_world_base();
-      if (here && truth) out.push_back({pose_of(*here), pose_of(*truth)});
-    }
-  }
-  return out;
-}
-
-// The truth moved by the error of the nearest signature. `metres_a_radian`: what it costs a
-// signature to look another way.
-Pose2 in_map_frame(const std::vector<MapError>& errors, const Pose2& truth,
-                   double metres_a_radian) {
-  if (errors.empty()) return truth;
-  const auto apart = [&](const MapError& one) {
-    return distance(one.in_truth, truth) +
-           metres_a_radian * std::abs(turn(one.in_truth.yaw_rad, truth.yaw_rad));
-  };
-  const auto nearest =
-      std::min_element(errors.begin(), errors.end(),
-                       [&](const MapError& a, const MapError& b) { return apart(a) < apart(b); });
-  return compose(nearest->in_map, between(nearest->in_truth, truth));
 }
 
 [[noreturn]] void stop(const std::string& message) {
@@ -170,7 +128,11 @@ int main(int argc, char** argv) {
   }
   std::vector<const MapFeatures*> resident;
   for (const MapFeatures& one : signatures) resident.push_back(&one);
-  const std::vector<MapError> errors = read_map_errors(*map);
+  const auto errors = MapError::read(*map);
+  if (!errors) stop(errors.error().message);
+  const auto in_map_frame = [&](const Pose2& true_pose, double metres_a_radian) {
+    return errors->in_map(true_pose, metres_a_radian).value_or(true_pose);
+  };
 
   QueryOptions query;
   query.needed = std::atoi(options["needed"].c_str());
@@ -182,7 +144,7 @@ int main(int argc, char** argv) {
   const bool lost = number("lost") != 0;
   int total = 0, right = 0, wrong = 0;
   std::vector<double> any_way;  // as to_map, by the nearest signature wherever it looks
-  std::vector<double> rest_ms;  // besides the detector
+  std::vector<double> rest_ms;  // without the detector
   std::vector<double> to_truth, to_map, yaw_error, all_ms, sigma_ratio;
   std::vector<std::vector<double>> stage_ms(kStages);
   std::map<std::string, int> reasons;
@@ -209,17 +171,17 @@ int main(int argc, char** argv) {
     for (std::size_t k = 0; k < kStages; ++k) {
       stage_ms[k].push_back(static_cast<double>(result.cpu_ns[k]) / 1e6);
     }
-    const Pose2 here = in_map_frame(errors, true_pose, 1);
-    const double off = distance(result.pose, true_pose);
-    const double turned = std::abs(turn(true_pose.yaw_rad, result.pose.yaw_rad));
+    const Pose2 here = in_map_frame(true_pose, 1);
+    const double off = apart_m(result.pose, true_pose);
+    const double turned = std::abs(turn_rad(true_pose.yaw_rad, result.pose.yaw_rad));
     if (result.accepted) {
       const bool good = off <= 0.5 && turned <= 10 * kDegree;
       good ? ++right : ++wrong;
       to_truth.push_back(off);
-      to_map.push_back(distance(result.pose, here));
-      any_way.push_back(distance(result.pose, in_map_frame(errors, true_pose, 0)));
+      to_map.push_back(apart_m(result.pose, here));
+      any_way.push_back(apart_m(result.pose, in_map_frame(true_pose, 0)));
       yaw_error.push_back(turned / kDegree);
-      sigma_ratio.push_back(distance(result.pose, here) /
+      sigma_ratio.push_back(apart_m(result.pose, here) /
                             std::max(1e-9, position_sigma_m(result.covariance)));
     }
     if (number("list") != 0) {
@@ -229,7 +191,7 @@ int main(int argc, char** argv) {
           (*images)[i].file.substr((*images)[i].file.rfind('/') + 1).c_str(),
           to_string(result.reason), result.matches, result.inliers, result.distinct, result.cells,
           result.visible, result.features, result.found ? off : -1, turned / kDegree,
-          distance(result.pose, here), result.residual_px, result.evidence,
+          apart_m(result.pose, here), result.residual_px, result.evidence,
           position_sigma_m(result.covariance));
     }
     if (number("false") > 0) {
@@ -261,7 +223,7 @@ int main(int argc, char** argv) {
       const MapFeatures& place = signatures[random() % signatures.size()];
       const Pose2 at{place.T_map_base.translation().x(), place.T_map_base.translation().y(),
                      std::atan2(place.T_map_base.linear()(1, 0), place.T_map_base.linear()(0, 0))};
-      if (distance(at, kept_truth[image]) < 5) continue;
+      if (apart_m(at, kept_truth[image]) < 5) continue;
       ++trial;
       const QueryResult result =
           localizer.locate(kept[image], resident, QueryPrior{at, covariance});

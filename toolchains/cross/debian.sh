@@ -64,7 +64,7 @@ unpack() {  # DEB DIR
 }
 
 # Links that a package's installation would make by update-alternatives: OpenCV asks for libblas.so.3, which lies in
-# blas/, beside those that other implementations would bring.
+# blas/, where it can stand next to other implementations.
 choose_alternatives() {  # DIR
   local library
   for library in "$1"/usr/lib/"$triplet"/{blas,lapack}/lib*.so.3; do

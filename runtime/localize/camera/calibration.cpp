@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/localize/camera/grey_image.hpp"
 namespace zonepack::localize {
 namespace {
 
@@ -85,7 +86,7 @@ void read_matrix(const YAML::Node& root, CameraModel& camera) {
   }
   if (camera.cx < 0 || camera.cx >= camera.width || camera.cy < 0 || camera.cy >= camera.height) {
     throw Wrong{"camera_matrix has its centre (third and sixth number) outside the image of " +
-                std::to_string(camera.width) + "x" + std::to_string(camera.height)};
+                size_text(camera.width, camera.height)};
   }
 }
 

@@ -3,9 +3,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace zonepack::localize {
+
+// "640x480".
+inline std::string size_text(std::int64_t width, std::int64_t height) {
+  return std::to_string(width) + "x" + std::to_string(height);
+}
 
 // An 8-bit image, row by row without gaps, and when it was taken.
 struct GreyImage {

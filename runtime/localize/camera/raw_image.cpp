@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "runtime/localize/camera/grey_image.hpp"
 #include "runtime/localize/camera/grey_rows.hpp"
 #include "runtime/localize/camera/image_file.hpp"
 
@@ -28,10 +29,6 @@ Row row_of(PixelFormat format) noexcept {
   }
 }
 
-std::string raw_size(int width, int height) {
-  return std::to_string(width) + "x" + std::to_string(height);
-}
-
 }  // namespace
 
 std::uint32_t least_row_bytes(PixelFormat format, int width) noexcept {
@@ -54,15 +51,15 @@ Outcome<void> to_grey(const RawImage& raw, const std::string& name, GreyImage& i
   if (raw.format == PixelFormat::kJpeg) {
     if (auto decoded = decode_jpeg(raw.bytes, name, into); !decoded) return decoded;
     if (into.width == raw.width && into.height == raw.height) return {};
-    return failure(name + ": its JPEG is " + raw_size(into.width, into.height) +
-                   " pixels; expected " + raw_size(raw.width, raw.height));
+    return failure(name + ": its JPEG is " + size_text(into.width, into.height) +
+                   " pixels; expected " + size_text(raw.width, raw.height));
   }
   const auto width = static_cast<std::size_t>(raw.width);
   const auto height = static_cast<std::size_t>(raw.height);
   const std::size_t least = least_row_bytes(raw.format, raw.width);
   const std::size_t needed = std::size_t{raw.row_bytes} * (height - 1) + least;
   if (raw.row_bytes < least || raw.bytes.size() < needed) {
-    return failure(name + ": an image of " + raw_size(raw.width, raw.height) + " has " +
+    return failure(name + ": an image of " + size_text(raw.width, raw.height) + " has " +
                        std::to_string(raw.bytes.size()) + " bytes; expected " +
                        std::to_string(needed) + " or more",
                    ErrorCode::kTruncated);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "platform/clock.hpp"
+#include "runtime/localize/camera/grey_image.hpp"
 
 namespace zonepack::localize {
 namespace {
@@ -103,8 +104,8 @@ bool SocketSource::parse_header(ByteSpan packet, Header& header, std::string& wh
   }
   if (width != static_cast<std::uint32_t>(width_) ||
       height != static_cast<std::uint32_t>(height_)) {
-    why = "an image of " + std::to_string(width) + "x" + std::to_string(height) +
-          "; the calibration is of " + std::to_string(width_) + "x" + std::to_string(height_);
+    why = "an image of " + size_text(width, height) + "; the calibration is of " +
+          size_text(width_, height_);
     return false;
   }
   header.image.format = static_cast<PixelFormat>(format);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "platform/base/counted.hpp"
+#include "runtime/localize/camera/grey_image.hpp"
 
 namespace zonepack::localize {
 namespace {
@@ -16,10 +17,6 @@ std::string rounded(double value, int digits) {
   char text[40];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   return text;
-}
-
-std::string size_text(int width, int height) {
-  return std::to_string(width) + "x" + std::to_string(height);
 }
 
 // The signature that is nearest to where the robot was said to be.

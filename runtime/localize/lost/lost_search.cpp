@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "runtime/odometry/poses_apart.hpp"
 #include "runtime/odometry/se2.hpp"
 
 namespace zonepack::localize {
@@ -24,12 +25,8 @@ constexpr double kLeaderShare = 0.5;  // of the support of the first
 // A place that was looked at again is not once more from so near.
 constexpr double kSameCheck_m = 0.15, kSameCheck_rad = 2 * kDegree;
 
-double turn(double from, double to) { return std::remainder(to - from, 2 * std::numbers::pi); }
-
-double apart_m(const Pose2& a, const Pose2& b) { return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m); }
-
 bool elsewhere(const Pose2& a, const Pose2& b) {
-  return apart_m(a, b) > kElsewhere_m || std::abs(turn(a.yaw_rad, b.yaw_rad)) > kElsewhere_rad;
+  return apart_m(a, b) > kElsewhere_m || std::abs(turn_rad(a.yaw_rad, b.yaw_rad)) > kElsewhere_rad;
 }
 
 }  // namespace
@@ -111,7 +108,7 @@ bool LostSearch::agree(const Seen& a, const Seen& b) const noexcept {
   const Pose2 there = carried(a, b.view);
   return apart_m(there, b.sight.pose) <=
              kAgree_m + kAgreePerMetre * std::hypot(step.x_m, step.y_m) &&
-         std::abs(turn(there.yaw_rad, b.sight.pose.yaw_rad)) <=
+         std::abs(turn_rad(there.yaw_rad, b.sight.pose.yaw_rad)) <=
              kAgree_rad + kAgreePerRadian * std::abs(step.yaw_rad);
 }
 
@@ -152,8 +149,8 @@ LostSearch::Cluster LostSearch::around(const Seen& centre, bool all) const {
     const Pose2 here = compose(centre.T_map_wheels, views_[i].T_wheels_base);
     const bool against = std::any_of(checked_.begin(), checked_.end(), [&](const Checked& checked) {
       return checked.view == views_[i].number && !elsewhere(checked.pose, here) &&
-             checked.visible >= rule_.should_see &&
-             checked.distinct < rule_.least_explained * checked.visible;
+             speaks_against(checked.distinct, checked.visible, rule_.should_see,
+                            rule_.least_explained);
     });
     place.against += against ? 1 : 0;
   }
@@ -191,8 +188,7 @@ std::vector<LostSearch::Cluster> LostSearch::clusters(std::size_t most, bool all
 bool LostSearch::was_checked(std::uint64_t view, ZoneId zone, const Pose2& pose) const noexcept {
   return std::any_of(checked_.begin(), checked_.end(), [&](const Checked& checked) {
     return checked.view == view && checked.zone == zone &&
-           apart_m(checked.pose, pose) < kSameCheck_m &&
-           std::abs(turn(checked.pose.yaw_rad, pose.yaw_rad)) < kSameCheck_rad;
+           are_within(checked.pose, pose, kSameCheck_m, kSameCheck_rad);
   });
 }
 

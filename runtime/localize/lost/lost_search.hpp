@@ -16,12 +16,10 @@ namespace zonepack::localize {
 // place; each adds its distinct inliers beyond chance, and a view that should see the place and
 // does not takes something away.
 struct LostRule {
-  int least_distinct = 15;       // of a view that is for a place
-  double least_explained = .12;  // distinct / visible, of the same
+  int least_distinct = 15;                   // of a view that is for a place
+  double least_explained = kLeastExplained;  // distinct / visible, of the same
   double chance = .08;  // of the features near projected points: those that agree anywhere, at most
-  // A view is against a place when this many of its features are near projected points there, and a
-  // smaller part than least_explained agrees.
-  int should_see = 60;
+  int should_see = kShouldSee;  // speaks_against()
   double against_costs = 8;
   double least_support = 42;
   std::size_t least_views = 3;

@@ -32,9 +32,9 @@ struct FoundFix {
 std::vector<FoundFix> fixes_at(std::span<const ViewMoment> moments, const LostSearch& search,
                                const LostPlace& place);
 
-// Leads a lost robot's search through the zones of a map, one in memory at a time: which zone is to
-// be had next, when to ask for a turn, when the robot is found. It neither loads nor waits; whoever
-// runs it does, and says what became of it.
+// Leads a lost robot's search through the zones of a map, one in memory at a time: which zone
+// to load next, when to ask for a turn, when the robot is found. It neither loads nor waits: its
+// caller does, and reports the outcome.
 //
 // Threads: one.
 class LostSweep {
@@ -66,8 +66,8 @@ class LostSweep {
   // compared.
   std::size_t look(ZoneId zone, std::span<const MapFeatures* const> map);
 
-  // Every zone was seen or passed over, and the views do not tell where the robot is: other views
-  // are needed. True at most every kTurnAgain_ns.
+  // Every zone was seen or passed over, and no place fits the views well enough: other views are
+  // needed. True at most every kTurnAgain_ns.
   bool asks_for_turn(std::int64_t now_ns);
 
   // When the robot is found: fixes for the newest images, at least two.

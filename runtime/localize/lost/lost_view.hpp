@@ -27,6 +27,15 @@ struct Sight {
   bool accepted = false;  // would be a fix if this were the robot's known place
 };
 
+// An image speaks against a place when this many of its features are near projected points of the
+// map there, and a smaller part of them agrees.
+inline constexpr int kShouldSee = 60;
+inline constexpr double kLeastExplained = .12;
+inline bool speaks_against(int distinct, int visible, int should_see = kShouldSee,
+                           double least_explained = kLeastExplained) noexcept {
+  return visible >= should_see && distinct < least_explained * visible;
+}
+
 inline Sight sight_of(const QueryResult& result) {
   return {result.pose, result.covariance, result.distinct, result.visible, result.accepted};
 }

@@ -7,6 +7,7 @@
 
 #include "runtime/localize/query/matching.hpp"
 #include "runtime/localize/solve/planar_ransac.hpp"
+#include "runtime/odometry/poses_apart.hpp"
 
 namespace zonepack::localize {
 namespace {
@@ -19,11 +20,6 @@ constexpr double kGuessReach_m = 3, kGuessReach_rad = 60 * std::numbers::pi / 18
 constexpr double kSameGuess_m = 0.6, kSameGuess_rad = 12 * std::numbers::pi / 180;
 constexpr Covariance2 kAroundGuess{0.04, 0, 0, 0.04, 0, 0.002};
 constexpr int kLeastDistinct = 8;
-
-bool same_guess(const Pose2& a, const Pose2& b) {
-  return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m) < kSameGuess_m &&
-         std::abs(std::remainder(a.yaw_rad - b.yaw_rad, 2 * std::numbers::pi)) < kSameGuess_rad;
-}
 
 }  // namespace
 
@@ -56,7 +52,9 @@ std::vector<Sight> ImageMatcher::guess(const LostView& view, ZoneId,
   std::vector<Pose2> tried;
   for (const PlanarPose& place : places) {
     if (tried.size() == kMostPlaces) break;
-    const auto same = [&](const Pose2& other) { return same_guess(other, place.pose); };
+    const auto same = [&](const Pose2& other) {
+      return are_within(other, place.pose, kSameGuess_m, kSameGuess_rad);
+    };
     if (std::any_of(tried.begin(), tried.end(), same)) continue;
     tried.push_back(place.pose);
     const QueryResult result =

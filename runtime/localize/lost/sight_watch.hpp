@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "runtime/localize/lost/lost_view.hpp"
 #include "runtime/localize/query/query_result.hpp"
 
 namespace zonepack::localize {
@@ -12,10 +13,6 @@ class SightWatch {
   // Images in a row without a fix. A pose that two fixes agreed on deserves more patience.
   static constexpr int kMostAgainst = 12, kMostAgainstGuess = 5;
   static constexpr int kMostMissed = 40, kMostMissedGuess = 12;
-  // An image speaks against the pose when this many of its features are near projected points, and
-  // a smaller part agrees.
-  static constexpr int kShouldSee = 60;
-  static constexpr double kLeastExplained = .12;
 
   // An image's query. own_zone: the robot's own zone was resident, or it is said to be in none.
   // True: the robot is lost.
@@ -24,8 +21,7 @@ class SightWatch {
       restart();
       return false;
     }
-    const bool against =
-        result.visible >= kShouldSee && result.distinct < kLeastExplained * result.visible;
+    const bool against = speaks_against(result.distinct, result.visible);
     const bool missed =
         own_zone && (result.signatures > 0 || result.reason == Reason::kNoSignature);
     // A dark image misses nothing.

@@ -7,6 +7,7 @@
 
 #include "runtime/localize/query/localizer.hpp"
 #include "runtime/localize/solve/sighting.hpp"
+#include "runtime/odometry/poses_apart.hpp"
 #include "runtime/odometry/se2.hpp"
 
 namespace zonepack::localize {
@@ -74,8 +75,7 @@ Candidates choose_candidates(std::span<const MapFeatures* const> map, const Came
     out.floor_z_m += near[i]->T_map_base.translation().z() / static_cast<double>(three);
   }
   const auto turn_of = [&](const MapFeatures* one) {
-    return std::abs(std::remainder(flatten(one->T_map_base).yaw_rad - prior.T_map_base.yaw_rad,
-                                   2 * std::numbers::pi));
+    return std::abs(turn_rad(prior.T_map_base.yaw_rad, flatten(one->T_map_base).yaw_rad));
   };
   out.nearest_turn_rad = turn_of(out.nearest);
 

@@ -7,6 +7,7 @@
 
 #include "runtime/localize/query/localizer_state.hpp"
 #include "runtime/localize/solve/planar_ransac.hpp"
+#include "runtime/odometry/poses_apart.hpp"
 
 namespace zonepack::localize {
 namespace {
@@ -52,8 +53,7 @@ void Localizer::State::locate_anywhere(const ImageFeatures& image,
   std::stable_sort(places.begin(), places.end(),
                    [](const Place& a, const Place& b) { return a.planar.score > b.planar.score; });
   const auto same = [](const Pose2& a, const Pose2& b) {
-    return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m) < kSamePlace_m &&
-           std::abs(std::remainder(a.yaw_rad - b.yaw_rad, 2 * std::numbers::pi)) < kSameYaw_rad;
+    return are_within(a, b, kSamePlace_m, kSameYaw_rad);
   };
   std::vector<QueryResult> found;
   std::vector<Pose2> tried;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace zonepack::localize {
 namespace {
@@ -88,6 +89,17 @@ std::optional<MapFeatures> copy_features(const SignatureView& signature, ZoneId 
     out.descriptors.insert(out.descriptors.end(), bytes, bytes + descriptor_bytes);
     out.reach_m = std::max(out.reach_m, (Eigen::Vector3d(p[0], p[1], p[2]) - camera).norm());
   });
+  return out;
+}
+
+std::vector<MapFeatures> copy_features(const ZoneSignatures& signatures, ZoneId zone,
+                                       std::uint32_t descriptor_bytes) {
+  std::vector<MapFeatures> out;
+  for (std::uint32_t i = 0; i < signatures.size(); ++i) {
+    if (auto one = copy_features(signatures[i], zone, descriptor_bytes)) {
+      out.push_back(std::move(*one));
+    }
+  }
   return out;
 }
 

@@ -37,4 +37,8 @@ struct MapFeatures {
 std::optional<MapFeatures> copy_features(const SignatureView& signature, ZoneId zone,
                                          std::uint32_t descriptor_bytes);
 
+// The same of every signature of a zone.
+std::vector<MapFeatures> copy_features(const ZoneSignatures& signatures, ZoneId zone,
+                                       std::uint32_t descriptor_bytes);
+
 }  // namespace zonepack::localize

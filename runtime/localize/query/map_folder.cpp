@@ -42,13 +42,7 @@ Outcome<std::vector<MapFeatures>> read_zone_features(const MapFolder& map, ZoneI
   const auto decoded = decode_zone(map.catalog, map.catalog.zones.at(zone),
                                    kCoreOnly | mask_of(fb::PayloadKind::Features));
   if (!decoded) return decoded.error();
-  std::vector<MapFeatures> out;
-  const ZoneSignatures signatures(decoded->view());
-  for (std::uint32_t i = 0; i < signatures.size(); ++i) {
-    auto features = copy_features(signatures[i], zone, map.detector.descriptor_bytes());
-    if (features) out.push_back(std::move(*features));
-  }
-  return out;
+  return copy_features(ZoneSignatures(decoded->view()), zone, map.detector.descriptor_bytes());
 }
 
 }  // namespace zonepack::localize

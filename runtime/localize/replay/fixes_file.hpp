@@ -13,7 +13,7 @@ namespace zonepack::localize {
 
 // The fixes of a loop as read_corrections() reads them, on the clock of the log as it stands.
 // Numbers read back exactly: `zoned replay --corrections` decides the same.
-// What was commanded besides comes as lines that begin with "# command" (command_lines.hpp), with
+// Commands to zoned come as lines that begin with "# command" (command_lines.hpp), with
 // zones by the names of the catalog.
 std::string fixes_text(std::span<const LoopView> views, std::span<const TimedCommand> commands = {},
                        const Catalog* map = nullptr);

@@ -14,6 +14,7 @@
 #include "runtime/localize/camera/calibration.hpp"
 #include "runtime/localize/camera/image_file.hpp"
 #include "runtime/localize/camera/image_list.hpp"
+#include "runtime/localize/camera/repeat_watch.hpp"
 #include "runtime/localize/check/calibration_text.hpp"
 #include "runtime/localize/check/calibration_watch.hpp"
 #include "runtime/localize/query/localizer.hpp"
@@ -70,10 +71,6 @@ struct LoopInputs {
   std::optional<BesideRun> beside;
 };
 
-std::string size_text(int width, int height) {
-  return std::to_string(width) + "x" + std::to_string(height);
-}
-
 // Fails when the list's first image is not of the calibration's size: then none is.
 Outcome<void> check_size(const std::vector<ListedImage>& images, const LoopArguments& arguments,
                          const CameraModel& camera) {
@@ -128,8 +125,7 @@ Outcome<LoopInputs> read_inputs(const LoopArguments& arguments) {
                     std::move(images), std::move(baseline), std::move(beside)};
 }
 
-// Reads the images and looks at them. A camera that hangs gives the same image over and over: no
-// camera's noise is the same twice, so a repetition is refused as `zoneloc run` refuses it.
+// Reads the images and looks at them. A repeated one is refused as `zoneloc run` refuses it.
 class Finder {
  public:
   Finder(Localizer& localizer, const CameraModel& camera)
@@ -139,26 +135,25 @@ class Finder {
                                   const QueryPrior& prior) {
     auto pixels = read_image(image.file);
     if (!pixels) return pixels.error();
-    if (!last_.pixels.empty() && pixels->width == last_.width && pixels->height == last_.height &&
-        pixels->pixels == last_.pixels) {
+    if (repeat_.repeats(*pixels)) {
       return failure(image.file +
                      ": repeats the image before bit for bit: the camera hangs; "
                      "nothing is sent for it");
     }
-    last_ = std::move(*pixels);
-    last_.stamp_ns = image.stamp_ns;
-    if ((last_.width != camera_.width || last_.height != camera_.height) && ++wrong_size_ <= 5) {
-      note("warning: " + image.file + ": is " + size_text(last_.width, last_.height) +
+    pixels->stamp_ns = image.stamp_ns;
+    if ((pixels->width != camera_.width || pixels->height != camera_.height) &&
+        ++wrong_size_ <= 5) {
+      note("warning: " + image.file + ": is " + size_text(pixels->width, pixels->height) +
            ", but the calibration is for images of " + size_text(camera_.width, camera_.height) +
            "; nothing is sent for it");
     }
-    return localizer_.query(last_, map, prior);
+    return localizer_.query(*pixels, map, prior);
   }
 
  private:
   Localizer& localizer_;
   const CameraModel& camera_;
-  GreyImage last_;
+  RepeatWatch repeat_;
   std::size_t wrong_size_ = 0;
 };
 

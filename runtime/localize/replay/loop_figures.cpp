@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "platform/realtime.hpp"
+#include "runtime/odometry/poses_apart.hpp"
 
 namespace zonepack::localize {
 namespace {
@@ -14,7 +15,7 @@ constexpr double kRight_m = 0.5, kRight_deg = 10;
 constexpr double kMs = 1e-6;  // a nanosecond
 
 double turn_deg(double a_rad, double b_rad) {
-  return std::abs(std::remainder(a_rad - b_rad, 2 * std::numbers::pi)) * 180 / std::numbers::pi;
+  return std::abs(turn_rad(b_rad, a_rad)) * 180 / std::numbers::pi;
 }
 
 // The longest time without a fix.
@@ -77,10 +78,6 @@ void HeadingWatch::after_cycle(const CycleRecord& cycle, const MapVersion&) noex
 
 std::optional<Spread> HeadingWatch::errors_deg() const {
   return spread_of({errors_deg_.begin(), errors_deg_.end()});
-}
-
-double apart_m(const Pose2& a, const Pose2& b) noexcept {
-  return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m);
 }
 
 bool is_right(const Pose2& fix, const Pose2& truth) noexcept {

@@ -64,8 +64,6 @@ class HeadingWatch final : public RunObserver {
   std::vector<float> errors_deg_;
 };
 
-double apart_m(const Pose2& a, const Pose2& b) noexcept;
-
 // Whether a fix is right, by the truth.
 bool is_right(const Pose2& fix, const Pose2& truth) noexcept;
 

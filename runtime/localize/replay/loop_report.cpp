@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/odometry/poses_apart.hpp"
 #include "runtime/report/format.hpp"
 #include "runtime/run/run_figures.hpp"
 

@@ -13,7 +13,6 @@
 namespace zonepack::localize {
 namespace {
 
-constexpr std::int64_t kWheels_ns = 1'000'000'000;
 // Fixes that were given and that the pose does not follow within this were not believed.
 constexpr std::int64_t kBelieved_ns = 1'000'000'000;
 
@@ -43,10 +42,7 @@ void LostLoop::lose(const FixMoment& moment) {
 }
 
 void LostLoop::follow(const FixMoment& moment) {
-  wheels_.push_back({moment.now_ns, moment.state.T_wheels_base});
-  while (wheels_.size() > 1 && wheels_.front().t_ns < moment.now_ns - kWheels_ns) {
-    wheels_.pop_front();
-  }
+  wheels_.add(moment.now_ns, moment.state.T_wheels_base);
   if (std::exchange(start_lost_, false)) lose(moment);
   if (!sweep_.active()) return;
   const bool trusted = moment.state.pose.trusted && moment.now_ns > lost_since_ns_ &&
@@ -60,22 +56,10 @@ void LostLoop::follow(const FixMoment& moment) {
   }
 }
 
-Pose2 LostLoop::wheels_at(std::int64_t stamp_ns) const noexcept {
-  const auto after = std::lower_bound(wheels_.begin(), wheels_.end(), stamp_ns,
-                                      [](const Wheels& w, std::int64_t t) { return w.t_ns < t; });
-  if (after == wheels_.end()) return wheels_.back().pose;
-  if (after == wheels_.begin()) return after->pose;
-  const Wheels& before = *(after - 1);
-  const double part =
-      static_cast<double>(stamp_ns - before.t_ns) / static_cast<double>(after->t_ns - before.t_ns);
-  const Pose2 step = between(before.pose, after->pose);
-  return compose(before.pose, {step.x_m * part, step.y_m * part, step.yaw_rad * part});
-}
-
 Outcome<void> LostLoop::see(const LoopImage& image) {
   auto features = describe_(image);
   if (!features) return features.error();
-  sweep_.see({++images_, image.stamp_ns, wheels_at(image.stamp_ns), std::move(*features)});
+  sweep_.see({++images_, image.stamp_ns, *wheels_.at(image.stamp_ns), std::move(*features)});
   return {};
 }
 
@@ -97,13 +81,8 @@ std::vector<FoundFix> LostLoop::search(const FixMoment& moment) {
   if (zone != kNoZone && view_of(zone) == resident.end()) {
     if (zone != std::exchange(sought_, zone)) post(Command::Kind::kSeek, zone);
   } else if (zone != kNoZone) {
-    std::vector<MapFeatures> features;
-    const ZoneSignatures signatures(view_of(zone)->view);
-    for (std::uint32_t i = 0; i < signatures.size(); ++i) {
-      if (auto one = copy_features(signatures[i], zone, descriptor_bytes_)) {
-        features.push_back(std::move(*one));
-      }
-    }
+    const std::vector<MapFeatures> features =
+        copy_features(ZoneSignatures(view_of(zone)->view), zone, descriptor_bytes_);
     std::vector<const MapFeatures*> list;
     for (const MapFeatures& one : features) list.push_back(&one);
     const std::size_t pairs = sweep_.look(zone, list);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <optional>
 #include <string>
@@ -12,6 +11,7 @@
 #include "runtime/localize/features/image_features.hpp"
 #include "runtime/localize/lost/lost_sweep.hpp"
 #include "runtime/localize/lost/sight_watch.hpp"
+#include "runtime/localize/lost/wheel_path.hpp"
 #include "runtime/replay/fix_source.hpp"
 #include "runtime/run/command_lines.hpp"
 
@@ -64,19 +64,14 @@ class LostLoop {
 
  private:
   void lose(const FixMoment& moment);
-  Pose2 wheels_at(std::int64_t stamp_ns) const noexcept;
   void post(Command::Kind kind, ZoneId zone = kNoZone);
 
-  struct Wheels {
-    std::int64_t t_ns = 0;
-    Pose2 pose;
-  };
   LostSweep sweep_;
   SightWatch watch_;
   ImageDescriber describe_;
   std::uint32_t descriptor_bytes_;
   bool start_lost_;
-  std::deque<Wheels> wheels_;  // of the last second
+  WheelPath wheels_{1'000'000'000};
   std::vector<Command> waiting_;
   std::vector<TimedCommand> commanded_;
   ZoneId sought_ = kNoZone;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "runtime/client/signature_view.hpp"
+#include "runtime/odometry/poses_apart.hpp"
 #include "runtime/odometry/se2.hpp"
 
 namespace zonepack::localize {
@@ -35,16 +36,12 @@ Outcome<MapError> MapError::read(const MapFolder& map) {
   return error;
 }
 
-std::optional<Pose2> MapError::in_map(const Pose2& truth) const noexcept {
-  // A map bends from one pass of its drive to the next, and where two passes went opposite ways
-  // the camera sees what one of them saw: a radian counts as a metre.
+std::optional<Pose2> MapError::in_map(const Pose2& truth, double metres_a_radian) const noexcept {
   const Place* nearest = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const Place& place : places_) {
-    const double dx = place.T_world_base.x_m - truth.x_m, dy = place.T_world_base.y_m - truth.y_m;
-    const double turned =
-        std::remainder(place.T_world_base.yaw_rad - truth.yaw_rad, 2 * std::numbers::pi);
-    const double apart = std::hypot(dx, dy) + std::abs(turned);
+    const double turned = std::abs(turn_rad(truth.yaw_rad, place.T_world_base.yaw_rad));
+    const double apart = apart_m(place.T_world_base, truth) + metres_a_radian * turned;
     if (apart < least) {
       least = apart;
       nearest = &place;

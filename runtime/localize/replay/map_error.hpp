@@ -24,8 +24,9 @@ class MapError {
   bool empty() const noexcept { return places_.empty(); }
 
   // Where the map has what is really at `truth`, by the signature that was really nearest, in
-  // place and in where it looked.
-  std::optional<Pose2> in_map(const Pose2& truth) const noexcept;
+  // place and in where it looked: a map bends from one pass of its drive to the next, and where two
+  // passes went opposite ways the camera sees what one of them saw.
+  std::optional<Pose2> in_map(const Pose2& truth, double metres_a_radian = 1) const noexcept;
 
  private:
   struct Place {

@@ -12,10 +12,6 @@ std::string age_text(std::int64_t ns) {
   return text;
 }
 
-std::string frame_size(int width, int height) {
-  return std::to_string(width) + "x" + std::to_string(height);
-}
-
 // Without overflow, whatever the stamps are.
 std::int64_t bounded_minus(std::int64_t a, std::int64_t b) noexcept {
   std::int64_t difference = 0;
@@ -27,8 +23,8 @@ std::int64_t bounded_minus(std::int64_t a, std::int64_t b) noexcept {
 
 std::string FrameWatch::refuse(const GreyImage& image, std::int64_t now_ns) {
   if (!image.whole() || image.width != width_ || image.height != height_) {
-    return "an image of " + frame_size(image.width, image.height) + "; the calibration is of " +
-           frame_size(width_, height_);
+    return "an image of " + size_text(image.width, image.height) + "; the calibration is of " +
+           size_text(width_, height_);
   }
   const std::int64_t age_ns = bounded_minus(now_ns, image.stamp_ns);
   if (age_ns > kMostAge_ns) {
@@ -43,13 +39,11 @@ std::string FrameWatch::refuse(const GreyImage& image, std::int64_t now_ns) {
     return "an image's stamp " + age_text(image.stamp_ns) + " does not rise over the one before, " +
            age_text(last_ns_);
   }
-  if (seen_ && image.pixels == last_) {
-    last_ns_ = image.stamp_ns;
-    return "an image is the one before, bit for bit: the camera repeats itself";
-  }
   seen_ = true;
   last_ns_ = image.stamp_ns;
-  last_ = image.pixels;
+  if (repeat_.repeats(image)) {
+    return "an image is the one before, bit for bit: the camera repeats itself";
+  }
   return {};
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/localize/camera/grey_image.hpp"
+#include "runtime/localize/camera/repeat_watch.hpp"
 
 namespace zonepack::localize {
 
@@ -29,7 +30,7 @@ class FrameWatch {
   const int width_, height_;
   bool seen_ = false;
   std::int64_t last_ns_ = 0;
-  std::vector<std::uint8_t> last_;
+  RepeatWatch repeat_;
 };
 
 }  // namespace zonepack::localize

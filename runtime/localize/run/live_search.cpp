@@ -11,7 +11,6 @@
 namespace zonepack::localize {
 namespace {
 
-constexpr std::int64_t kWheelsKept_ns = 6'000'000'000;
 constexpr std::int64_t kFixesBelieved_ns = 1'000'000'000;  // else they were refused
 
 }  // namespace
@@ -27,23 +26,7 @@ LiveSearch::LiveSearch(ZonedLink& link, std::vector<SearchZone> zones, Localizer
       sweep_(std::move(zones), matcher_) {}
 
 void LiveSearch::follow(const RobotState& state) {
-  if (!state.wheels) return;
-  if (!wheels_.empty() && state.run_ns <= wheels_.back().t_ns) return;
-  wheels_.push_back({state.run_ns, *state.wheels});
-  while (wheels_.front().t_ns < state.run_ns - kWheelsKept_ns) wheels_.pop_front();
-}
-
-std::optional<Pose2> LiveSearch::wheels_at(std::int64_t run_ns) const noexcept {
-  const auto after = std::lower_bound(wheels_.begin(), wheels_.end(), run_ns,
-                                      [](const Wheels& w, std::int64_t t) { return w.t_ns < t; });
-  if (wheels_.empty()) return std::nullopt;
-  if (after == wheels_.end()) return wheels_.back().pose;
-  if (after == wheels_.begin()) return after->pose;
-  const Wheels& before = *(after - 1);
-  const double part =
-      static_cast<double>(run_ns - before.t_ns) / static_cast<double>(after->t_ns - before.t_ns);
-  const Pose2 step = between(before.pose, after->pose);
-  return compose(before.pose, {step.x_m * part, step.y_m * part, step.yaw_rad * part});
+  if (state.wheels) wheels_.add(state.run_ns, *state.wheels);
 }
 
 Result<void> LiveSearch::begin(const RobotState& state) {
@@ -68,7 +51,7 @@ Result<void> LiveSearch::judge(const QueryResult& result, const RobotState& stat
 }
 
 void LiveSearch::see(const GreyImage& image, std::int64_t run_ns) {
-  const auto wheels = wheels_at(run_ns);
+  const auto wheels = wheels_.at(run_ns);
   auto features = localizer_.detect(image);
   if (!wheels || !features) return;
   counters_.count_searching();
@@ -80,12 +63,7 @@ bool LiveSearch::look(ZoneId zone) {
   ReadStatus status = ReadStatus::kOk;
   link_.hold(zone, [&] {
     status = link_.read(zone, [&](const ZoneSignatures& signatures) {
-      features.clear();
-      for (std::uint32_t i = 0; i < signatures.size(); ++i) {
-        if (auto one = copy_features(signatures[i], zone, descriptor_bytes_)) {
-          features.push_back(std::move(*one));
-        }
-      }
+      features = copy_features(signatures, zone, descriptor_bytes_);
     });
   });
   if (status != ReadStatus::kOk) return false;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include "runtime/localize/lost/lost_sweep.hpp"
 #include "runtime/localize/lost/sight_watch.hpp"
+#include "runtime/localize/lost/wheel_path.hpp"
 #include "runtime/localize/query/localizer.hpp"
 #include "runtime/localize/run/fix_counters.hpp"
 #include "runtime/localize/run/zoned_link.hpp"
@@ -42,7 +42,6 @@ class LiveSearch {
   Result<std::vector<FoundFix>> step(const RobotState& state);
 
  private:
-  std::optional<Pose2> wheels_at(std::int64_t run_ns) const noexcept;
   bool look(ZoneId zone);
 
   ZonedLink& link_;
@@ -53,11 +52,7 @@ class LiveSearch {
   Say say_;
   LostSweep sweep_;
   SightWatch watch_;
-  struct Wheels {
-    std::int64_t t_ns = 0;
-    Pose2 pose;
-  };
-  std::deque<Wheels> wheels_;  // of the last seconds
+  WheelPath wheels_{6'000'000'000};
   ZoneId sought_ = kNoZone;
   std::int64_t begun_ns_ = 0;
   std::optional<std::int64_t> given_ns_;

@@ -104,9 +104,9 @@ Outcome<void> Run::connect() {
     return failure(socket_ + ": zoned does not say what found its map's features; update zoned",
                    ErrorCode::kBadVersion);
   }
+  const auto settings = parse_detector(*detector, "zoned's map");
+  if (!settings) return settings.error();
   if (!localizer_ || *detector != detector_) {
-    const auto settings = parse_detector(*detector, "zoned's map");
-    if (!settings) return settings.error();
     localizer_ = std::make_unique<Localizer>(camera_, *settings);
     localizer_->options().keep_matches = true;  // for the calibration watch
     features_ = std::make_unique<ResidentFeatures>(settings->descriptor_bytes());
@@ -115,7 +115,6 @@ Outcome<void> Run::connect() {
   search_.reset();
   link_ = std::make_unique<ZonedLink>(std::move(link).value());
   if (auto zones = link_->search_zones()) {
-    const auto settings = parse_detector(*detector, "zoned's map");
     search_ = std::make_unique<LiveSearch>(*link_, std::move(zones).value(), *localizer_, *settings,
                                            counters_, say);
   }

@@ -120,14 +120,12 @@ Result<RobotState> ZonedLink::state() {
       wheels != nullptr && std::isfinite(wheels->x() + wheels->y() + wheels->yaw())) {
     state.wheels = Pose2{wheels->x(), wheels->y(), wheels->yaw()};
   }
-  if (status->pose() != nullptr) {
-    state.trusted = status->pose()->trusted();
-    state.zone = status->pose()->zone();
-    state.own_resident = state.zone == kNoZone || status->zone_resident();
-  }
   const wire::PoseReport* const pose = status->pose();
-  if (pose == nullptr || !pose->valid() || pose->pose() == nullptr ||
-      pose->covariance() == nullptr) {
+  if (pose == nullptr) return state;
+  state.trusted = pose->trusted();
+  state.zone = pose->zone();
+  state.own_resident = state.zone == kNoZone || status->zone_resident();
+  if (!pose->valid() || pose->pose() == nullptr || pose->covariance() == nullptr) {
     return state;
   }
   const wire::Covariance& c = *pose->covariance();

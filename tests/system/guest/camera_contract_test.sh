@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Cameras of a kernel hold what zoneloc asks of them, on the kernel's own virtual one (vivid); zoneloc streams from it
-# beside a zoned and shows the images it took in zonectl status, and a camera that is not there is refused by name.
+# next to zoned and shows the images it took in zonectl status, and a camera that is not there is refused by name.
 # shellcheck source=tests/system/guest/lib.sh
 . /payload/tests/lib.sh
 hold_contract video_device_contract

@@ -13,8 +13,9 @@ import struct
 import subprocess
 import sys
 import tempfile
-import zlib
 from pathlib import Path
+
+from black_png import black_png
 
 BIN, SOURCE, DOUBLE = (Path(argument).resolve() for argument in sys.argv[1:4])
 DATABASE = SOURCE / "tests/data/hospital-small.db"
@@ -52,14 +53,6 @@ def of_signature(column):
 def pose_here():
     m = struct.unpack("<12f", of_signature("pose"))
     return m[3], m[7], math.atan2(m[4], m[0])
-
-
-def black_png(width, height):
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    rows = b"".join(b"\0" + bytes(width) for _ in range(height))
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", width, height, 8, 0, 0, 0, 0)) +
-            chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
 def run(*command, code=0):

@@ -15,8 +15,9 @@ import subprocess
 import sys
 import tempfile
 import time
-import zlib
 from pathlib import Path
+
+from black_png import black_png
 
 BIN, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 DATABASE = SOURCE / "tests/data/hospital-small.db"
@@ -54,14 +55,6 @@ def start_at(signature):
     import math
     m = struct.unpack("<12f", of_signature("pose", signature))
     return f"{m[3]:.4f},{m[7]:.4f},{math.degrees(math.atan2(m[4], m[0])):.3f}"
-
-
-def png(width, height):
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    rows = b"".join(b"\0" + bytes(width) for _ in range(height))
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", width, height, 8, 0, 0, 0, 0)) +
-            chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
 def write_log(file):
@@ -154,7 +147,7 @@ def check_folder():
     for second, data in ((4, here), (5, elsewhere), (6, here), (7, here)):
         (images / f"{START_S + second}.5.jpg").write_bytes(data)
     (images / f"{START_S + 8}.5.jpg").write_bytes(here[:len(here) // 2])
-    (images / f"{START_S + 9}.5.png").write_bytes(png(64, 48))
+    (images / f"{START_S + 9}.5.png").write_bytes(black_png(64, 48))
     robot = Robot()
     zoneloc = Locating("folder:images")
     zoneloc.says("bit for bit")

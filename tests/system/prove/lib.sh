@@ -65,3 +65,22 @@ drop_caches() {
   sync
   if [ -w /proc/sys/vm/drop_caches ]; then echo 3 >/proc/sys/vm/drop_caches; fi
 }
+
+mib() { awk -v n="$1" 'BEGIN { printf "%.2f", n / 1048576 }'; }  # BYTES
+
+# The same drive under less and less, until it fails: a proof that cannot fail shows nothing. Uses $work and fail;
+# DRIVE NAME LIMIT writes $work/NAME/code and $work/NAME/hits.
+drive_until_it_fails() {  # PEAK STEP TURNS DRIVE...
+  local lower=$1 step=$2 turns=$3 turn code hits
+  shift 3
+  for turn in $(seq "$turns"); do
+    lower=$((lower - step))
+    "$@" "lower-$turn" $lower
+    code=$(cat "$work/lower-$turn/code") hits=$(cat "$work/lower-$turn/hits")
+    if ((code != 0 || hits > 0)); then
+      echo "fails under $lower bytes, $(mib $lower) MiB: exit code $code, limit hit $hits times"
+      return
+    fi
+  done
+  fail "the drive does not fail under $lower bytes either, so this proves nothing"
+}

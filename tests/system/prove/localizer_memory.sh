@@ -19,7 +19,6 @@ cleanup() {
 trap cleanup EXIT
 [ -f "$mission/rgb.txt" ] || { echo "localizer_memory: $mission has no rgb.txt"; exit 77; }
 find_memory_cgroups || { echo "localizer_memory: no memory cgroup here"; exit 77; }
-mib() { awk -v n="$1" 'BEGIN { printf "%.2f", n / 1048576 }'; }
 
 # Where the mission starts, as --start takes it.
 start=$(awk '!/^#/ { yaw = 2 * atan2($7, $8) * 180 / 3.14159265358979; printf "%s,%s,%.4f", $2, $3, yaw; exit }' \
@@ -88,14 +87,4 @@ echo "zoneloc, $looks looks: at most $(mib "$own") MiB of its own, $(mib "$files
 ((own <= of_zoneloc)) || fail "zoneloc took $own bytes of its own"
 ((fixes > 0)) || fail "no fix: this proves nothing of a localizer: $(cat "$run/zoneloc.json")"
 jq -e '.budget_violations == 0' "$run/zoned.json" >/dev/null || fail "$(cat "$run/zoned.json")"
-lower=$(cat "$run/peak")
-for turn in $(seq 6); do
-  lower=$((lower - (4 << 20)))
-  drive "lower-$turn" $lower
-  code=$(cat "$work/lower-$turn/code") hits=$(cat "$work/lower-$turn/hits")
-  if ((code != 0 || hits > 0)); then
-    echo "fails under $(mib $lower) MiB: exit code $code, limit hit $hits times"
-    exit 0
-  fi
-done
-fail "the drive does not fail under $lower bytes either, so this proves nothing"
+drive_until_it_fails "$(cat "$run/peak")" $((4 << 20)) 6 drive

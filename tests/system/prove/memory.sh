@@ -83,7 +83,6 @@ drive() {  # NAME LIMIT SPEED SECONDS alone|readers|neighbour
 }
 
 of() { jq -r "$2" "$work/$1"; }
-mib() { awk -v n="$1" 'BEGIN { printf "%.2f", n / 1048576 }'; }
 
 row() {  # NAME
   local run=$work/$1 watched=$1/watch.json
@@ -157,15 +156,8 @@ if ((seconds > 0)); then  # side by side: only memory is judged, and it is each 
   for company in alone readers neighbour; do judge "$company@1" $limit; done
 fi
 
-lower=$(cat "$work/alone@$speed/peak")
-for turn in $(seq 16); do
-  lower=$((lower - (1 << 20)))
+drive_alone() {  # NAME LIMIT
   drop_caches
-  drive "lower-$turn" $lower "$speed" 0 alone
-  code=$(cat "$work/lower-$turn/code") hits=$(cat "$work/lower-$turn/hits")
-  if ((code != 0 || hits > 0)); then
-    echo "fails under $lower bytes, $(mib $lower) MiB: exit code $code, limit hit $hits times"
-    exit 0
-  fi
-done
-fail "the run does not fail under $lower bytes either, so this proves nothing"
+  drive "$1" "$2" "$speed" 0 alone
+}
+drive_until_it_fails "$(cat "$work/alone@$speed/peak")" $((1 << 20)) 16 drive_alone
