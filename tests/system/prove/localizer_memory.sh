@@ -5,7 +5,8 @@
 # hit, and zoneloc's own memory (what it maps of zoned's is zoned's) is at most 26 MiB, looked at 10 times a
 # second. Then the same under less, until it fails, which shows that it can.
 # MISSION: a folder with can0.log, base_groundtruth.txt, calibration.yaml, rgb.txt and its images. They are read before,
-# outside of the group: a camera's images come from no file. Exit code 77 where nobody can limit memory, or without images.
+# outside of the group: a camera's images come from no file. So are the libraries: the kernel charges a file's pages to
+# who reads them first and far more of them than the program maps, which is what counts as its own. Exit code 77 where nobody can limit memory, or without images.
 set -euo pipefail
 bin=$1 source=$2 db=$3 mission=$(realpath "$4") speed=$5
 . "$(dirname "$0")/lib.sh"
@@ -71,6 +72,7 @@ for program in zoned zoneloc; do strip -o "$work/$program" "$bin/$program"; done
 budget=$("$bin/zonepack" plan "$work/map" --json - 2>/dev/null | jq .smallest_budget_bytes)
 limit=$((budget + of_zoned + of_zoneloc))
 cat "$mission/can0.log" >/dev/null
+for program in zoned zoneloc; do ldd "$work/$program"; done | awk '$3 ~ /^\// { print $3 }' | sort -u | xargs cat >/dev/null
 awk -v folder="$mission" '!/^#/ && NF > 1 { print folder "/" $2 }' "$mission/rgb.txt" | xargs -d '\n' cat >/dev/null
 drive together $limit
 run=$work/together
