@@ -122,7 +122,7 @@ Similarity fit_most(const Matrix3Xd& from, const Matrix3Xd& to) {
 }
 
 void require_meeting(const std::vector<KeyframePose>& keyframes, const Trajectory& trajectory,
-                     std::size_t pairs, const Placement& placement, const std::string& source) {
+                     std::size_t pairs, const FramePlacement& placement, const std::string& source) {
   if (pairs >= kLeastPairs) return;
   const auto [first, last] = std::ranges::minmax(keyframes, {}, &KeyframePose::stamp_s);
   throw std::runtime_error(placement.trajectory.string() + ": covers " + std::to_string(pairs) +
@@ -153,7 +153,7 @@ Eigen::Quaterniond turned_in_base(const std::vector<KeyframePose>& keyframes,
   return Eigen::Quaterniond(R);
 }
 
-void use_turn(const Eigen::Quaterniond& turn, const Placement& placement, Alignment& out) {
+void use_turn(const Eigen::Quaterniond& turn, const FramePlacement& placement, Alignment& out) {
   const Isometry3d found = Eigen::Translation3d(out.T_base_camera.translation()) * turn;
   const double apart_deg =
       turn.angularDistance(Eigen::Quaterniond(out.T_base_camera.linear())) / kRadians;
@@ -169,7 +169,7 @@ void use_turn(const Eigen::Quaterniond& turn, const Placement& placement, Alignm
   }
 }
 
-void align_to_trajectory(const std::vector<KeyframePose>& keyframes, const Placement& placement,
+void align_to_trajectory(const std::vector<KeyframePose>& keyframes, const FramePlacement& placement,
                          const std::string& source, Alignment& out) {
   const Trajectory trajectory = Trajectory::read(placement.trajectory);
   std::vector<Vector3d> from_list, to_list;
@@ -258,7 +258,7 @@ std::array<double, 6> camera_in_base(const Isometry3d& T_base_optical) {
   return {p.x(), p.y(), p.z(), roll / kRadians, pitch / kRadians, yaw / kRadians};
 }
 
-Alignment align_keyframes(const std::vector<KeyframePose>& keyframes, const Placement& placement,
+Alignment align_keyframes(const std::vector<KeyframePose>& keyframes, const FramePlacement& placement,
                           bool metric, const std::string& source) {
   Alignment out;
   out.T_base_camera = optical_in_base(placement.camera_in_base.value_or(std::array<double, 6>{}));

@@ -67,7 +67,7 @@ CLI::Option* add_source_options(CLI::App& command, SourceOptions& source, const 
           "side of the tiles that a point cloud (*.pcd) is cut into, also at zone borders; default "
           "10")
       ->type_name("METRES");
-  Placement& placement = source.placement;
+  FramePlacement& placement = source.placement;
   CLI::Option* const align =
       command
           .add_option(

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
   throw std::runtime_error(path + ": cannot be written: " + text);
 }
 
-fs::path folder_of(const fs::path& file) {
+fs::path folder_around(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
@@ -36,7 +36,7 @@ void require_writable(const std::string& file) {
   }
   // A device or a pipe is written in place.
   if (fs::exists(there) && !fs::is_regular_file(there)) return;
-  const fs::path folder = folder_of(file);
+  const fs::path folder = folder_around(file);
   const fs::file_status status = fs::status(folder, ignored);
   if (!fs::exists(status)) {
     refuse(file, "there is no folder " + folder.string() + "; create it first: mkdir -p " +
@@ -57,7 +57,7 @@ void require_writable_folder(const fs::path& folder, const std::string& option) 
   // "map/" is the folder "map".
   if (!there.has_filename() && there.has_parent_path()) there = there.parent_path();
   while (!fs::exists(fs::status(there, ignored))) {
-    const fs::path parent = folder_of(there);
+    const fs::path parent = folder_around(there);
     if (parent == there) break;
     there = parent;
   }

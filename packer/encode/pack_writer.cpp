@@ -75,7 +75,7 @@ bool PackWriter::fill(Queue& queue, std::uint64_t capacity) {
 
 void PackWriter::emit_bulk(fb::PayloadKind kind, Queue& queue) {
   if (queue.chunk.empty()) {
-    throw std::runtime_error("zone " + zone_ + ": one row of " + to_string(kind) +
+    throw std::runtime_error("zone " + zone_ + ": one row of " + zonepack::to_string(kind) +
                              " is longer than a slot of " + std::to_string(kSlotBytes) + " bytes");
   }
   const std::uint32_t first = queue.chunk.first_signature();

@@ -6,7 +6,6 @@
 namespace zonepack::packer {
 namespace {
 
-constexpr std::int32_t kNeighbour = 0, kGlobalClosure = 1;  // Link::type
 
 template <typename Write>
 void write_list(JsonLines& json, std::string_view key, bool packed, std::size_t count,
@@ -54,14 +53,14 @@ void write_keyframe(JsonLines& json, std::string_view zone, const SignatureRecor
   record.calibration.empty() ? json.null() : json.base64(record.calibration);
   std::int32_t parent = -1;
   for (const Link& link : record.links) {
-    if (link.type == kNeighbour) parent = link.to;
+    if (link.type == kNeighbourLink) parent = link.to;
   }
   json.key("span_parent");
   json.integer(parent);
   json.key("loop_edges");
   json.begin_array();
   for (const Link& link : record.links) {
-    if (link.type == kGlobalClosure) json.integer(link.to);
+    if (link.type == kGlobalClosureLink) json.integer(link.to);
   }
   json.end_array();
   json.end_object();

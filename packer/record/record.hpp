@@ -67,6 +67,9 @@ struct Grid {
   std::optional<Matrix> ground, obstacle, empty;
 };
 
+// RTAB-Map's numbers of links, of those that others have too.
+inline constexpr std::int32_t kNeighbourLink = 0, kGlobalClosureLink = 1;
+
 struct Link {
   std::int32_t to = 0;    // negative: a landmark
   std::int32_t type = 0;  // the database's integer

@@ -15,7 +15,7 @@
 namespace zonepack::packer {
 
 // Where a map stands that was made in a frame of its own: without level or, with one camera, scale.
-struct Placement {
+struct FramePlacement {
   // A trajectory (TUM: stamp x y z qx qy qz qw) of the robot's base in the frame wanted.
   std::filesystem::path trajectory;
   std::optional<double> metres_per_unit;
@@ -34,7 +34,7 @@ struct SourceOptions {
 
   std::filesystem::path path;
   std::string kind;  // SourceKind::name; empty: found by content
-  Placement placement;
+  FramePlacement placement;
   double tile_m = 10;  // the side of a tile, where a cloud is cut into tiles
   // The zone at a place of the map, or any number for none: clouds are cut where it changes. Empty:
   // there are no zones.

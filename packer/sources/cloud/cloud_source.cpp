@@ -10,7 +10,7 @@
 namespace zonepack::packer {
 namespace {
 
-constexpr std::int32_t kFloat32 = 5;  // OpenCV's depth
+constexpr std::int32_t kFloat32Depth = 5;  // OpenCV's depth
 
 std::int32_t format_of(const CloudFields& f) {
   const std::int32_t mask = (f.intensity ? 1 : 0) + (f.rgb ? 2 : 0) + (f.ring ? 4 : 0);
@@ -82,7 +82,7 @@ Scan CloudSource::scan_of(const CloudTile& tile) {
   scan.local_transform = tile.T_base_points;
   scan.data.rows = 1;
   scan.data.cols = static_cast<std::int32_t>(points_.size());
-  scan.data.type = kFloat32 + static_cast<std::int32_t>((channels - 1) << 3);
+  scan.data.type = kFloat32Depth + static_cast<std::int32_t>((channels - 1) << 3);
   scan.data.data.resize(points_.size() * channels * 4);
   std::byte* at = scan.data.data.data();
   const auto put = [&at](auto value) {

@@ -28,7 +28,7 @@ struct Key {
   auto operator<=>(const Key&) const = default;
 };
 
-struct Draft {
+struct TileDraft {
   std::size_t index = 0;  // of the tile, in order of the key
   std::uint64_t points = 0, first = 0, filled = 0;
   std::array<double, 3> sum{};
@@ -90,7 +90,7 @@ class TiledCloud : public CloudMap {
         ++nowhere;
         continue;
       }
-      Draft& draft = drafts_[key_of(p)];
+      TileDraft& draft = drafts_[key_of(p)];
       if (drafts_.size() > kMostTiles) {
         throw std::runtime_error(name_ +
                                  ": would be cut into more than 1,000,000 tiles; give a "
@@ -126,13 +126,13 @@ class TiledCloud : public CloudMap {
   void distribute() {
     const auto stream = open_pcd(name_);
     const std::size_t words = fields.words();
-    std::vector<std::pair<Draft*, Words>> held;
+    std::vector<std::pair<TileDraft*, Words>> held;
     held.reserve(kPointsAtOnce);
     const auto flush = [&] {
       std::ranges::stable_sort(held, {}, [](const auto& one) { return one.first->index; });
       std::vector<std::uint32_t> run;
       for (std::size_t i = 0; i < held.size();) {
-        Draft& draft = *held[i].first;
+        TileDraft& draft = *held[i].first;
         run.clear();
         std::size_t end = i;
         for (; end < held.size() && held[end].first == &draft; ++end) {
@@ -151,7 +151,7 @@ class TiledCloud : public CloudMap {
       if (!is_place(p)) continue;
       const auto found = drafts_.find(key_of(p));
       if (found == drafts_.end()) fail_changed();
-      Draft& draft = found->second;
+      TileDraft& draft = found->second;
       note_nearest(p, draft);
       held.emplace_back(&draft, words_of(p, draft));
       if (held.size() == kPointsAtOnce) flush();
@@ -166,7 +166,7 @@ class TiledCloud : public CloudMap {
     throw std::runtime_error(name_ + ": changed while it was read; try again");
   }
 
-  static void note_nearest(const CloudPoint& p, Draft& draft) {
+  static void note_nearest(const CloudPoint& p, TileDraft& draft) {
     const auto n = static_cast<double>(draft.points);
     const double dx = p.x - draft.sum[0] / n, dy = p.y - draft.sum[1] / n,
                  dz = p.z - draft.sum[2] / n;
@@ -176,7 +176,7 @@ class TiledCloud : public CloudMap {
     draft.base = {p.x, p.y, p.z};
   }
 
-  Words words_of(const CloudPoint& p, const Draft& draft) const {
+  Words words_of(const CloudPoint& p, const TileDraft& draft) const {
     Words out{};
     std::size_t at = 0;
     const auto put = [&](double value) {
@@ -230,7 +230,7 @@ class TiledCloud : public CloudMap {
   File spool_;
   std::uintmax_t bytes_ = 0;
   std::filesystem::file_time_type written_;
-  std::map<Key, Draft> drafts_;
+  std::map<Key, TileDraft> drafts_;
   std::vector<std::uint64_t> places_;  // by tile: its first point in the spool
 };
 

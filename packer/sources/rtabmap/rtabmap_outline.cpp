@@ -16,7 +16,7 @@ namespace zonepack::packer {
 namespace {
 
 constexpr std::int32_t kDeletedWeight = -9;
-constexpr std::uint64_t kFeatureRowBytes = 72;
+constexpr std::uint64_t kBytesOfFeatureRow = 72;
 constexpr std::int32_t kInt32 = 4, kFloat32 = 5, kInt8 = 1;
 
 void add_damage(MapOutline& outline, NodeOutline& node, const Damage& damage) {
@@ -279,7 +279,7 @@ void read_totals(const SqliteFile& file, const RtabmapSchema& schema, MapOutline
       sql += " WHERE node_id IN (SELECT id FROM Node WHERE weight IS NOT -9)";
     }
     outline.feature_count = count(file, sql);
-    outline.feature_bytes = outline.feature_count * kFeatureRowBytes;
+    outline.feature_bytes = outline.feature_count * kBytesOfFeatureRow;
   }
   if (schema.has("Data")) {
     outline.scan_bytes = count(file, blob_sum(schema, {"scan"}));

@@ -32,6 +32,8 @@ struct OrbParameters {
   int levels = 8, ini_threshold = 20, min_threshold = 7;
 };
 
+inline constexpr std::size_t kMostKeypoints = 1'000'000;  // of a keyframe
+
 struct StellaKeyframe {
   std::int32_t id = 0;
   double stamp_s = 0;

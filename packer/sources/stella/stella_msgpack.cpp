@@ -19,12 +19,11 @@ namespace zonepack::packer {
 namespace {
 
 constexpr std::size_t kWordsPerDescriptor = 8;
-constexpr std::size_t kMostKeypoints = 1'000'000;
 constexpr std::size_t kMostCameras = 1000;
 constexpr std::uint64_t kNoParent = 4294967295U;
 
 // What a file holds of a keyframe, while it is read.
-struct Draft {
+struct KeyframeDraft {
   StellaKeyframe keyframe;
   StellaFeatures features;
   std::vector<float> distorted_angle;  // of 2019's keypts, whose undists are points only
@@ -88,7 +87,7 @@ class StellaSax : public MsgpackWalk {
       has_landmarks |= part == "landmarks";
     }
     if (depth() != 3) return;
-    draft_ = Draft();
+    draft_ = KeyframeDraft();
     landmark_ = LandmarkDraft();
     camera_ = StellaCamera();
     orb_ = OrbParameters();
@@ -311,7 +310,7 @@ class StellaSax : public MsgpackWalk {
     f.size.resize(n);
   }
 
-  Draft draft_;
+  KeyframeDraft draft_;
   LandmarkDraft landmark_;
   StellaCamera camera_;
   OrbParameters orb_;

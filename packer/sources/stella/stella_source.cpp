@@ -12,8 +12,7 @@
 namespace zonepack::packer {
 namespace {
 
-constexpr std::int32_t kNeighbour = 0, kGlobalClosure = 1;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 Transform transform_of(const Eigen::Isometry3d& T) {
   Transform out;
@@ -26,7 +25,7 @@ Transform transform_of(const Eigen::Isometry3d& T) {
 }
 
 template <typename T>
-void append(Bytes& bytes, const T& value) {
+void append_value(Bytes& bytes, const T& value) {
   const auto* const data = reinterpret_cast<const std::byte*>(&value);
   bytes.insert(bytes.end(), data, data + sizeof value);
 }
@@ -52,11 +51,11 @@ Bytes calibration_of(const StellaCamera& camera, const Eigen::Isometry3d& T_base
       0,           static_cast<std::int32_t>(P.size()),
       12};
   Bytes bytes;
-  for (const std::int32_t value : head) append(bytes, value);
-  for (const double value : K) append(bytes, value);
-  for (const double value : distortion) append(bytes, value);
-  for (const double value : P) append(bytes, value);
-  append(bytes, transform_of(T_base_camera));
+  for (const std::int32_t value : head) append_value(bytes, value);
+  for (const double value : K) append_value(bytes, value);
+  for (const double value : distortion) append_value(bytes, value);
+  for (const double value : P) append_value(bytes, value);
+  append_value(bytes, transform_of(T_base_camera));
   return bytes;
 }
 
@@ -165,7 +164,7 @@ void StellaSource::read_features(const StellaKeyframe& keyframe, Features& into)
   into.descriptor_dim = n == 0 ? 0 : 32;
   into.descriptors = buffer_.descriptors;
   into.word_id.assign(n, -1);
-  for (auto* column : {&into.point_x, &into.point_y, &into.point_z}) column->assign(n, kNan);
+  for (auto* column : {&into.point_x, &into.point_y, &into.point_z}) column->assign(n, kUnknown);
   const Eigen::Isometry3d T_base_map = shared_->T_map_base(keyframe).inverse();
   for (std::size_t i = 0; i < n; ++i) {
     if (buffer_.landmark[i] < 0) continue;
@@ -190,8 +189,8 @@ void StellaSource::read_links(const StellaKeyframe& keyframe, std::vector<Link>&
     link.type = type;
     link.transform = transform_of(T_base_map * shared_->T_map_base(*other));
   };
-  add(keyframe.span_parent, kNeighbour);
-  for (const std::int32_t to : keyframe.loop_edges) add(to, kGlobalClosure);
+  add(keyframe.span_parent, kNeighbourLink);
+  for (const std::int32_t to : keyframe.loop_edges) add(to, kGlobalClosureLink);
   const auto order = [](const Link& link) { return std::tie(link.type, link.to); };
   std::ranges::sort(into, {}, order);
   const auto same = std::ranges::unique(into, {}, order);

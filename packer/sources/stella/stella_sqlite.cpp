@@ -14,7 +14,6 @@ namespace {
 constexpr std::size_t kKeypointBytes =
     28;  // x, y, size, angle, response float32; octave, class int32
 constexpr std::size_t kDescriptorBytes = 32;
-constexpr std::size_t kMostKeypoints = 1'000'000;
 
 template <typename T>
 T value_at(std::span<const std::byte> bytes, std::size_t offset) {

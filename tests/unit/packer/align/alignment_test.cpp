@@ -77,7 +77,7 @@ class AlignmentTest : public ::testing::Test {
   }
 
   test_support::TemporaryFolder folder_;
-  Placement placement_;
+  FramePlacement placement_;
   Isometry3d mount_;
   std::vector<Isometry3d> bases_;
 };
