@@ -54,6 +54,7 @@ struct BuildSummary {
   std::vector<SplitZone> split;
   std::vector<std::string> warnings;  // complete sentences
   std::vector<std::string> zone_names;
+  ZonePlan plan;  // after splitting
   std::vector<PackSummary> packs;   // by zone
   ByteCount charged_bytes = 0;      // all zones, default payload: slots x slot size
   ByteCount stored_bytes = 0;       // features, scans, grids and core, as stored in packs

@@ -201,7 +201,8 @@ report::Report make_zones_page(const ZonesOnMap& map) {
   }
   if (!map.partition.orphans.empty()) page.tables.push_back(orphans_table(map));
   page.tables.push_back(zones_table(map));
-  page.origin = "Drawn by zonepack check-zones from " + map.file + ".";
+  page.origin =
+      map.origin.empty() ? "Drawn by zonepack check-zones from " + map.file + "." : map.origin;
   return page;
 }
 

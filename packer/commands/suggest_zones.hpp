@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
+
+#include "platform/base/byte_count.hpp"
+
+namespace zonepack::packer {
+
+struct SuggestZonesOptions {
+  std::string db, grid;  // one of the two
+  std::string out;       // zones.geojson
+  std::string preview;   // .html, .svg or .png; empty: none
+  std::string method = "basins";
+  double door_ratio = 0.8;
+  double min_area_m2 = 1.5;
+  double max_length_m = 0;       // 0: any
+  ByteCount max_zone_bytes = 0;  // 0: any; needs a database
+};
+
+// Writes zones and portals for a database's occupancy grid, or one of map_server. Throws
+// std::runtime_error.
+void suggest_zones(const SuggestZonesOptions& options, std::ostream& text,
+                   nlohmann::ordered_json& json);
+
+// `zonepack suggest-zones (--db DB | --grid map.yaml) --out zones.geojson`; sets exit_code when it
+// has run.
+void add_suggest_zones_command(CLI::App& app, int& exit_code);
+
+}  // namespace zonepack::packer
