@@ -8,18 +8,23 @@
 #include <stdexcept>
 #include <utility>
 
+#include "packer/suggest/arms.hpp"
 #include "packer/suggest/basins.hpp"
 #include "packer/suggest/borders.hpp"
 #include "packer/suggest/doors.hpp"
 #include "packer/suggest/kinds.hpp"
+#include "packer/suggest/passes.hpp"
 #include "packer/zones/findings.hpp"
 #include "runtime/pack_format/limits.hpp"
 
 namespace zonepack::packer::suggest {
 namespace {
 
-constexpr double kClutter_m2 = 0.5;
+// Free-standing furniture, a table with its chairs. Half a square metre leaves tables that cut rooms
+// in two; far more would free the pillars of a hall.
+constexpr double kClutter_m2 = 2.5;
 constexpr double kRobotWidth_m = 0.6;  // an islet that is nowhere wider is the inside of a wall
+constexpr double kLooseRatio = 0.65;
 constexpr double kDoorReach_m = 0.5;
 constexpr double kGap_m2 = 2;          // a pillar this small needs no hole
 constexpr double kLeastPortal_m = 0.3;
@@ -208,6 +213,10 @@ Regions rooms_of(FreeSpace& space, const Options& options) {
   const std::vector<std::int32_t> clearance2 = squared_clearance(space);
   Regions regions = basins_of(space, clearance2, options.door_ratio);
   fold_small(regions, space, clearance2, options.min_area_m2, kRobotWidth_m);
+  straighten_doors(regions, space, kDoorReach_m);
+  renumber(regions, space);
+  join_without_door(regions, space, clearance2, std::min(kLooseRatio, options.door_ratio));
+  cut_arms(regions, space, clearance2);
   straighten_doors(regions, space, kDoorReach_m);
   renumber(regions, space);
   fold_small(regions, space, clearance2, options.min_area_m2, kRobotWidth_m);
