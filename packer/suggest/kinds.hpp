@@ -11,9 +11,10 @@ namespace zonepack::packer::suggest {
 
 // What a person would call a room, from its shape alone.
 //
-//   corridor  at least four times as long as wide, with two neighbours or more; or twice, with five
-//   hall      100 m2 or more
+//   corridor  four times as long as it is wide at its widest, with two neighbours or more; or three
+//             times, with five; up to 5 m wide
 //   lobby     30 m2 or more, with three neighbours or more
+//   hall      100 m2 or more
 //   closet    under 4 m2
 //   room      everything else
 struct Kind {
