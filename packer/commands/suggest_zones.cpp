@@ -15,13 +15,14 @@
 
 #include "packer/build/map_builder.hpp"
 #include "packer/commands/report.hpp"
+#include "packer/commands/source_options.hpp"
 #include "packer/console/command_line.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/words.hpp"
 #include "packer/outline/map_drawing.hpp"
 #include "packer/outline/map_server.hpp"
 #include "packer/preview/zones_page.hpp"
-#include "packer/sources/rtabmap_database.hpp"
+#include "packer/sources/open_source.hpp"
 #include "packer/suggest/suggest.hpp"
 #include "packer/zones/orphans.hpp"
 #include "packer/zones/zone_text.hpp"
@@ -68,33 +69,35 @@ struct Ground {
   std::vector<std::int32_t> sessions;  // parallel
 };
 
-Ground read_database(const std::string& file) {
-  RtabmapDatabase database(file);
-  require_signatures(database.outline(), file);
-  Ground ground;
-  ground.drawing = drawing_of(database);
-  if (ground.drawing.image.cells.empty()) {
-    throw std::runtime_error(file +
-                             ": no local grids and no map of its own, so there is no floor plan to "
-                             "draw zones on; give a grid with --grid map.yaml");
-  }
-  for (const NodeOutline& node : database.outline().nodes) {
+void read_signatures(const MapOutline& outline, Ground& ground) {
+  for (const NodeOutline& node : outline.nodes) {
     if (!node.pose) continue;
     const Transform& T = *node.pose;
     ground.places.push_back({node.id, {T[3], T[7]}, T[11]});
     ground.sessions.push_back(node.map_id);
   }
-  database.require_unchanged();
-  return ground;
 }
 
 Ground read_ground(const SuggestZonesOptions& options) {
-  if (!options.db.empty()) return read_database(options.db);
-  ServedMap map = read_served_map(options.grid);
   Ground ground;
-  ground.drawing.image = std::move(map.image);
-  ground.drawing.source = map.image_file;
-  ground.yaw_rad = map.yaw_rad;
+  if (!options.grid.empty()) {
+    ServedMap map = read_served_map(options.grid);
+    ground.drawing.image = std::move(map.image);
+    ground.drawing.source = map.image_file;
+    ground.yaw_rad = map.yaw_rad;
+  }
+  if (options.source) {
+    const std::unique_ptr<MapSource> source = open_source(*options.source);
+    require_signatures(source->outline(), options.source->name());
+    if (options.grid.empty()) ground.drawing = drawing_of(*source);
+    if (ground.drawing.image.cells.empty()) {
+      throw std::runtime_error(options.source->name() +
+                               ": no local grids and no map of its own, so there is no floor plan "
+                               "to draw zones on; add a grid in the same frame with --grid map.yaml");
+    }
+    read_signatures(source->outline(), ground);
+    source->require_unchanged();
+  }
   return ground;
 }
 
@@ -160,6 +163,10 @@ std::vector<suggest::PathPlace> path_of(const Ground& ground, const FreeSpace& s
   return path;
 }
 
+std::string source_of(const SuggestZonesOptions& options) {
+  return options.grid.empty() ? options.source->name() : options.grid;
+}
+
 void write_text(const std::string& path, const std::string& text) {
   if (const Result<void> written = write_file_atomically(path, text); !written) {
     throw std::runtime_error(cannot_write(path, written.error()).message);
@@ -181,7 +188,7 @@ ZonePlan split_by_bytes(const SuggestZonesOptions& options, const std::string& z
     }
   } const remover{pattern};
   BuildOptions build;
-  build.database = options.db;
+  build.source = *options.source;
   build.zones = remover.folder / "zones.geojson";
   build.out = remover.folder / "map";
   build.max_zone_bytes = options.max_zone_bytes;
@@ -203,7 +210,7 @@ void draw(const SuggestZonesOptions& options, const Ground& ground, const ZoneFi
                  .ground = ground.yaw_rad == 0 ? &ground.drawing : nullptr,
                  .wrap = !options.preview.ends_with(".html"),
                  .origin = "Drawn by zonepack suggest-zones from " +
-                           (options.db.empty() ? options.grid : options.db) + "."};
+                           source_of(options) + "."};
   if (!ground.places.empty()) {
     map.partition = partition(file.plan.zones, ground.places, OrphanPolicy::kDrop);
   }
@@ -258,7 +265,7 @@ void suggest_zones(const SuggestZonesOptions& options, std::ostream& text, order
     how.method = suggest::Method::kPath;
     how.path = path_of(ground, space, place, rule);
   }
-  const std::string source = options.db.empty() ? options.grid : options.db;
+  const std::string source = source_of(options);
   suggest::Suggestion found;
   try {
     found = suggest::suggest(std::move(space), place, how);
@@ -305,9 +312,9 @@ void suggest_zones(const SuggestZonesOptions& options, std::ostream& text, order
   for (const std::string& warning : warnings) text << "warning: " << warning << "\n";
   if (!options.preview.empty()) text << options.preview << ": the zones as a picture\n";
   text << "Next: look at them, rename what you know by name, then\n  zonepack "
-       << (options.db.empty() ? "check-zones " + shell_word(options.out)
-                              : "build --db " + shell_word(options.db) + " --zones " +
-                                    shell_word(options.out) + " --out map")
+       << (options.source ? "build --db " + shell_word(options.source->name()) + " --zones " +
+                               shell_word(options.out) + " --out map"
+                         : "check-zones " + shell_word(options.out))
        << "\n";
 
   json["out"] = options.out;
@@ -325,18 +332,18 @@ void suggest_zones(const SuggestZonesOptions& options, std::ostream& text, order
 void add_suggest_zones_command(CLI::App& app, int& exit_code) {
   struct Arguments {
     SuggestZonesOptions options;
+    SourceOptions source;
     JsonOutput json;
   };
   const auto arguments = std::make_shared<Arguments>();
   SuggestZonesOptions& options = arguments->options;
   CLI::App* const command = app.add_subcommand(
       "suggest-zones", "Draw zones by themselves: rooms, corridors and doors of a floor plan");
-  CLI::Option_group* const source = command->add_option_group("source");
-  source->add_option("--db", options.db, "RTAB-Map database: its own grid, or its local grids")
-      ->type_name("DB");
-  source->add_option("--grid", options.grid, "map_server file that names a PGM or PNG image")
+  add_source_options(*command, arguments->source, "draw on the map's own grid, or its local grids");
+  command
+      ->add_option("--grid", options.grid,
+                   "draw on this grid of map_server (PGM or PNG); with --db, in the same frame")
       ->type_name("map.yaml");
-  source->require_option(1);
   command->add_option("--out", options.out, "GeoJSON of zones and portals")
       ->type_name("zones.geojson")
       ->required();
@@ -390,14 +397,18 @@ void add_suggest_zones_command(CLI::App& app, int& exit_code) {
                {"zonepack suggest-zones --db map.db --out zones.geojson --preview zones.html",
                 "zonepack suggest-zones --grid map.yaml --out zones.geojson --max-length 20"});
   command->callback([arguments, &exit_code] {
-    const SuggestZonesOptions& chosen = arguments->options;
-    const std::string rule_name = rule_of(chosen.method).value().name;
-    if (chosen.db.empty() && (rule_name == "path" || rule_name == "count")) {
-      throw CLI::ValidationError("--method", "'" + chosen.method +
-                                                 "' follows the mapping robot's path: give --db");
+    SuggestZonesOptions& chosen = arguments->options;
+    if (!arguments->source.path.empty()) chosen.source = arguments->source;
+    if (!chosen.source && chosen.grid.empty()) {
+      throw CLI::ValidationError("suggest-zones", "needs a floor plan: give --db or --grid");
     }
-    if (chosen.db.empty() && chosen.max_zone_bytes > 0) {
-      throw CLI::ValidationError("--max-zone-bytes", "needs the signatures of a database: give --db");
+    const std::string rule = rule_of(chosen.method).value().name;
+    if (!chosen.source && (rule == "path" || rule == "count")) {
+      throw CLI::ValidationError(
+          "--method", "'" + chosen.method + "' follows the mapping robot's path: give --db");
+    }
+    if (!chosen.source && chosen.max_zone_bytes > 0) {
+      throw CLI::ValidationError("--max-zone-bytes", "needs the signatures of a map: give --db");
     }
     require_writable(chosen.out);
     require_writable(chosen.preview);

@@ -4,14 +4,17 @@
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <optional>
 #include <string>
 
+#include "packer/record/source_kind.hpp"
 #include "platform/base/byte_count.hpp"
 
 namespace zonepack::packer {
 
 struct SuggestZonesOptions {
-  std::string db, grid;  // one of the two
+  std::optional<SourceOptions> source;  // without a grid, its own is taken
+  std::string grid;                     // of map_server; empty: none
   std::string out;       // zones.geojson
   std::string preview;   // .html, .svg or .png; empty: none
   std::string method = "basins";
