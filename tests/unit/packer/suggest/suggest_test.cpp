@@ -177,11 +177,12 @@ TEST(Suggest, CutsACorridorOffTheHallThatItOpensInto) {
 TEST(Suggest, TakesABedForFurnitureAndNotForAWall) {
   FreeSpace space = empty_space(6, 3.2);
   free_up(space, 0, 0, 6, 3.2);
-  free_up(space, 2.5, 1.2, 3.5, 3.2, false);  // its head at the upper wall; 1.2 m are left
+  free_up(space, 2.5, 1.7, 3.5, 3.2, false);  // its head at the upper wall; 1.7 m are left
   EXPECT_EQ(suggest(space, {}, {}).plan.zones.size(), 1u);
-  // A wall of 0.2 m with a door as wide as what is left parts two rooms.
-  free_up(space, 2.5, 1.2, 3.5, 3.2);
-  free_up(space, 2.9, 1.2, 3.1, 3.2, false);
+  // A wall of 0.2 m with a door as wide as what is left parts two rooms: the pass is 0.85 m, the
+  // peaks are 1.25 m, so 0.68 is below 0.8 and above the 0.65 of a pass without a wall.
+  free_up(space, 2.5, 1.7, 3.5, 3.2);
+  free_up(space, 2.9, 1.7, 3.1, 3.2, false);
   EXPECT_EQ(suggest(space, {}, {}).plan.zones.size(), 2u);
 }
 
