@@ -394,8 +394,8 @@ void add_suggest_zones_command(CLI::App& app, int& exit_code) {
       "The zones share their borders, hold every free cell of their rooms, and are ready for\n"
       "build; portals stand in the doors. The same grid gives the same bytes on every machine.");
   add_examples(*command,
-               {"zonepack suggest-zones --db map.db --out zones.geojson --preview zones.html",
-                "zonepack suggest-zones --grid map.yaml --out zones.geojson --max-length 20"});
+               {"zonepack suggest-zones --db map.db --out rooms.geojson --preview rooms.html",
+                "zonepack suggest-zones --grid outline/map.yaml --out rooms.geojson --max-length 20"});
   command->callback([arguments, &exit_code] {
     SuggestZonesOptions& chosen = arguments->options;
     if (!arguments->source.path.empty()) chosen.source = arguments->source;

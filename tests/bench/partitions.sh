@@ -50,6 +50,7 @@ row() { names+=("$1"); zones_of "$@"; }
 row drawn drawn
 row suggested basins
 row suggested-15m basins --max-length 15
+row suggested-3MiB basins --max-zone-bytes 3MiB
 row grid-5m grid:5m
 row grid-10m grid:10m
 row path-10m path:10m
