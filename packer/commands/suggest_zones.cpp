@@ -91,9 +91,10 @@ Ground read_ground(const SuggestZonesOptions& options) {
     require_signatures(source->outline(), options.source->name());
     if (options.grid.empty()) ground.drawing = drawing_of(*source);
     if (ground.drawing.image.cells.empty()) {
-      throw std::runtime_error(options.source->name() +
-                               ": no local grids and no map of its own, so there is no floor plan "
-                               "to draw zones on; add a grid in the same frame with --grid map.yaml");
+      throw std::runtime_error(
+          options.source->name() +
+          ": no local grids and no map of its own, so there is no floor plan "
+          "to draw zones on; add a grid in the same frame with --grid map.yaml");
     }
     read_signatures(source->outline(), ground);
     source->require_unchanged();
@@ -103,8 +104,7 @@ Ground read_ground(const SuggestZonesOptions& options) {
 
 // With a margin of one cell that is not free.
 FreeSpace free_space_of(const MapImage& image) {
-  if (image.width == 0 || image.height == 0 ||
-      image.width > kMostServedCells / image.height) {
+  if (image.width == 0 || image.height == 0 || image.width > kMostServedCells / image.height) {
     throw std::runtime_error("the floor plan has " + std::to_string(image.width) + " x " +
                              std::to_string(image.height) + " cells, at most " +
                              std::to_string(kMostServedCells) + " are searched for rooms");
@@ -145,8 +145,7 @@ std::vector<suggest::PathPlace> path_of(const Ground& ground, const FreeSpace& s
   for (std::size_t i = 0; i < ground.places.size(); ++i) {
     const Point2 p = ground.places[i].p_map;
     const double step = i == 0 ? 0 : distance_m(p, ground.places[i - 1].p_map);
-    const bool jump =
-        i > 0 && (ground.sessions[i] != ground.sessions[i - 1] || step > kMostGap_m);
+    const bool jump = i > 0 && (ground.sessions[i] != ground.sessions[i - 1] || step > kMostGap_m);
     if (!jump) metres += step;
     if (jump || (rule.name == "path" ? metres >= rule.size : count >= rule.size)) {
       ++stretch;
@@ -176,7 +175,8 @@ void write_text(const std::string& path, const std::string& text) {
 // Splits zones that charge too much as a build would, by building.
 ZonePlan split_by_bytes(const SuggestZonesOptions& options, const std::string& zones,
                         std::size_t& split) {
-  std::string pattern = (std::filesystem::temp_directory_path() / "zonepack-suggest-XXXXXX").string();
+  std::string pattern =
+      (std::filesystem::temp_directory_path() / "zonepack-suggest-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) {
     throw std::runtime_error(pattern + ": cannot create a folder to measure zones in");
   }
@@ -209,8 +209,7 @@ void draw(const SuggestZonesOptions& options, const Ground& ground, const ZoneFi
                  .misdrawn = {},
                  .ground = ground.yaw_rad == 0 ? &ground.drawing : nullptr,
                  .wrap = !options.preview.ends_with(".html"),
-                 .origin = "Drawn by zonepack suggest-zones from " +
-                           source_of(options) + "."};
+                 .origin = "Drawn by zonepack suggest-zones from " + source_of(options) + "."};
   if (!ground.places.empty()) {
     map.partition = partition(file.plan.zones, ground.places, OrphanPolicy::kDrop);
   }
@@ -280,7 +279,8 @@ void suggest_zones(const SuggestZonesOptions& options, std::ostream& text, order
   }
   const ZoneFile checked = parse_zone_file(zones);
   if (!checked.findings.faults.empty()) {
-    throw std::runtime_error(source + ": the suggested zones are faulty, which is a bug; please "
+    throw std::runtime_error(source +
+                             ": the suggested zones are faulty, which is a bug; please "
                              "report it with the grid\n" +
                              describe_faults(checked.findings, options.out));
   }
@@ -313,8 +313,8 @@ void suggest_zones(const SuggestZonesOptions& options, std::ostream& text, order
   if (!options.preview.empty()) text << options.preview << ": the zones as a picture\n";
   text << "Next: look at them, rename what you know by name, then\n  zonepack "
        << (options.source ? "build --db " + shell_word(options.source->name()) + " --zones " +
-                               shell_word(options.out) + " --out map"
-                         : "check-zones " + shell_word(options.out))
+                                shell_word(options.out) + " --out map"
+                          : "check-zones " + shell_word(options.out))
        << "\n";
 
   json["out"] = options.out;
@@ -386,16 +386,18 @@ void add_suggest_zones_command(CLI::App& app, int& exit_code) {
                                      "' is none of basins, grid:METRES, path:METRES, count:N (from "
                                      "0.5 m and 1 signature on)";
       });
-  add_report_option(*command, options.preview,
-                    "draw the zones over the grid: .html, .svg or .png", "--preview");
+  add_report_option(*command, options.preview, "draw the zones over the grid: .html, .svg or .png",
+                    "--preview");
   arguments->json.add_option(*command);
   command->footer(
-      "Rooms are where the clearance to walls rises; a door is where it falls between two of them.\n"
+      "Rooms are where the clearance to walls rises; a door is where it falls between two of "
+      "them.\n"
       "The zones share their borders, hold every free cell of their rooms, and are ready for\n"
       "build; portals stand in the doors. The same grid gives the same bytes on every machine.");
-  add_examples(*command,
-               {"zonepack suggest-zones --db map.db --out rooms.geojson --preview rooms.html",
-                "zonepack suggest-zones --grid outline/map.yaml --out rooms.geojson --max-length 20"});
+  add_examples(
+      *command,
+      {"zonepack suggest-zones --db map.db --out rooms.geojson --preview rooms.html",
+       "zonepack suggest-zones --grid outline/map.yaml --out rooms.geojson --max-length 20"});
   command->callback([arguments, &exit_code] {
     SuggestZonesOptions& chosen = arguments->options;
     if (!arguments->source.path.empty()) chosen.source = arguments->source;

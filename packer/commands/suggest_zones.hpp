@@ -3,8 +3,8 @@
 
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
-#include <ostream>
 #include <optional>
+#include <ostream>
 #include <string>
 
 #include "packer/record/source_kind.hpp"
@@ -15,8 +15,8 @@ namespace zonepack::packer {
 struct SuggestZonesOptions {
   std::optional<SourceOptions> source;  // without a grid, its own is taken
   std::string grid;                     // of map_server; empty: none
-  std::string out;       // zones.geojson
-  std::string preview;   // .html, .svg or .png; empty: none
+  std::string out;                      // zones.geojson
+  std::string preview;                  // .html, .svg or .png; empty: none
   std::string method = "basins";
   double door_ratio = 0.8;
   double min_area_m2 = 1.5;

@@ -80,8 +80,8 @@ class PgmReader {
                           std::to_string(left));
       }
     } else if ((bytes_.size() - at_) / 2 + 1 < pixels) {
-      refuse(path_, "ends early: it is too short for " + size_of(image.width, image.height) +
-                        " numbers");
+      refuse(path_,
+             "ends early: it is too short for " + size_of(image.width, image.height) + " numbers");
     }
     image.pixels.reserve(pixels);
     for (std::size_t i = 0; i < pixels; ++i) {

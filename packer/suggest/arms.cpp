@@ -82,7 +82,8 @@ class ArmCutter {
       const std::int32_t width2 = clearance2_[static_cast<std::size_t>(cell)];
       arm2 = std::max(arm2, width2);
       sum += std::sqrt(width2);
-      for (const CellIndex near : {cell - space_.columns, cell - 1, cell + 1, cell + space_.columns}) {
+      for (const CellIndex near :
+           {cell - space_.columns, cell - 1, cell + 1, cell + space_.columns}) {
         if (regions.at(near) != region_ || is_wide(near)) continue;
         regions.at(near) = fresh;
         arm.push_back(near);

@@ -25,7 +25,9 @@ class Basins {
   }
   std::int32_t peak2(Region root) const { return peak2_[static_cast<std::size_t>(root)]; }
   // Basins are added by falling peaks, so the earlier has the higher one.
-  void join(Region a, Region b) { parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b); }
+  void join(Region a, Region b) {
+    parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  }
 
  private:
   std::vector<Region> parent_;
@@ -58,8 +60,7 @@ Regions basins_of(const FreeSpace& space, const std::vector<std::int32_t>& clear
     const std::int64_t pass2 = clearance2[static_cast<std::size_t>(cell)];
     Region home = kNoRegion;
     std::int32_t home2 = -1;
-    for (const CellIndex near :
-         {cell - space.columns, cell - 1, cell + 1, cell + space.columns}) {
+    for (const CellIndex near : {cell - space.columns, cell - 1, cell + 1, cell + space.columns}) {
       const Region region = regions.at(near);
       const std::int32_t near2 = clearance2[static_cast<std::size_t>(near)];
       if (region == kNoRegion || near2 <= home2) continue;
@@ -71,8 +72,7 @@ Regions basins_of(const FreeSpace& space, const std::vector<std::int32_t>& clear
       continue;
     }
     regions.at(cell) = home;
-    for (const CellIndex near :
-         {cell - space.columns, cell - 1, cell + 1, cell + space.columns}) {
+    for (const CellIndex near : {cell - space.columns, cell - 1, cell + 1, cell + space.columns}) {
       if (regions.at(near) == kNoRegion) continue;
       const Region a = basins.root(home), b = basins.root(regions.at(near));
       if (a == b) continue;

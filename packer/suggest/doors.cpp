@@ -23,7 +23,8 @@ std::int64_t side(Corner a, Corner b, Corner p) {
 class DoorStraightener {
  public:
   DoorStraightener(Regions& regions, const FreeSpace& space, double reach_m)
-      : regions_(regions), space_(space),
+      : regions_(regions),
+        space_(space),
         reach_(static_cast<std::size_t>(reach_m / space.cell_m + 0.5)) {}
 
   void run() {
@@ -67,12 +68,13 @@ class DoorStraightener {
 
   // Whether the line runs inside the two regions: sampled every quarter cell, off its ends.
   bool is_clear(Corner p, Corner q, const Border& border) const {
-    const auto steps = static_cast<std::int64_t>(
-        4 * std::max(std::abs(p.x - q.x), std::abs(p.y - q.y)));
+    const auto steps =
+        static_cast<std::int64_t>(4 * std::max(std::abs(p.x - q.x), std::abs(p.y - q.y)));
     for (std::int64_t k = 1; k < steps; ++k) {
       // In units of 1 / (2 * steps) cells; a sample on an edge looks at both cells.
       const std::int64_t x = p.x * steps + (q.x - p.x) * k, y = p.y * steps + (q.y - p.y) * k;
-      const auto x0 = static_cast<std::int32_t>(x / steps), y0 = static_cast<std::int32_t>(y / steps);
+      const auto x0 = static_cast<std::int32_t>(x / steps),
+                 y0 = static_cast<std::int32_t>(y / steps);
       const bool on_x = x % steps == 0, on_y = y % steps == 0;
       bool any = false;
       for (std::int32_t v = y0 - (on_y ? 1 : 0); v <= y0; ++v) {

@@ -40,7 +40,8 @@ std::vector<Kind> kinds_of(const Regions& regions, const FreeSpace& space,
     const double square = space.area_m2(1) * 4 * peak2[i];  // as wide as it is at its widest
     const double times_as_long = kinds[i].area_m2 / square;
     const std::size_t doors = neighbours[i].size();
-    const bool long_enough = (times_as_long >= 4 && doors >= 2) || (times_as_long >= 3 && doors >= 5);
+    const bool long_enough =
+        (times_as_long >= 4 && doors >= 2) || (times_as_long >= 3 && doors >= 5);
     if (long_enough && square <= kWidestCorridor_m * kWidestCorridor_m) {
       kinds[i].name = "corridor";
     } else if (kinds[i].area_m2 >= 30 && doors >= 3) {

@@ -50,9 +50,8 @@ class PassJudge {
     }
     std::vector<Pass> list;
     for (const auto& [pair, pass] : widest) list.push_back(pass);
-    std::stable_sort(list.begin(), list.end(), [](const Pass& a, const Pass& b) {
-      return a.clearance2 > b.clearance2;
-    });
+    std::stable_sort(list.begin(), list.end(),
+                     [](const Pass& a, const Pass& b) { return a.clearance2 > b.clearance2; });
     return list;
   }
 

@@ -189,9 +189,8 @@ void open_corners(Regions& regions, const FreeSpace& space) {
       for (std::int32_t x = 0; x + 1 < space.columns; ++x) {
         const CellIndex low_left = space.at(x, y), low_right = low_left + 1;
         const CellIndex high_left = low_left + space.columns, high_right = high_left + 1;
-        for (const auto& [a, b, c, d] :
-             {std::array{low_left, high_right, low_right, high_left},
-              std::array{low_right, high_left, low_left, high_right}}) {
+        for (const auto& [a, b, c, d] : {std::array{low_left, high_right, low_right, high_left},
+                                         std::array{low_right, high_left, low_left, high_right}}) {
           const Region region = regions.at(a);
           if (region == kNoRegion || regions.at(b) != region) continue;
           if (regions.at(c) == region || regions.at(d) == region) continue;

@@ -18,8 +18,9 @@ class Walk {
  public:
   explicit Walk(const FreeSpace& space) : space_(space), length_(space.size(), -1) {}
 
-  // Calls reach(cell, from) whenever a cell is reached, in order of length; from is the cell before,
-  // or the cell itself. Steps lead where may_enter(cell) allows, diagonal ones not past corners.
+  // Calls reach(cell, from) whenever a cell is reached, in order of length; from is the cell
+  // before, or the cell itself. Steps lead where may_enter(cell) allows, diagonal ones not past
+  // corners.
   template <typename MayEnter, typename Reach>
   void run(std::span<const CellIndex> starts, MayEnter&& may_enter, Reach&& reach) {
     struct Step {

@@ -20,13 +20,13 @@
 namespace zonepack::packer::suggest {
 namespace {
 
-// Free-standing furniture, a table with its chairs. Half a square metre leaves tables that cut rooms
-// in two; far more would free the pillars of a hall.
+// Free-standing furniture, a table with its chairs. Half a square metre leaves tables that cut
+// rooms in two; far more would free the pillars of a hall.
 constexpr double kClutter_m2 = 2.5;
 constexpr double kRobotWidth_m = 0.6;  // an islet that is nowhere wider is the inside of a wall
 constexpr double kLooseRatio = 0.65;
 constexpr double kDoorReach_m = 0.5;
-constexpr double kGap_m2 = 2;          // a pillar this small needs no hole
+constexpr double kGap_m2 = 2;  // a pillar this small needs no hole
 constexpr double kLeastPortal_m = 0.3;
 
 // Regions as zones with names; `whole` are the regions before long ones were cut.
@@ -109,11 +109,10 @@ class Drawer {
       (i == 0 ? zone.polygon.outer : zone.polygon.holes.emplace_back()) = std::move(ring);
     }
     if (vertices > kMaxVerticesPerZone) {
-      throw std::runtime_error("zone '" + zone.name + "' near " +
-                               point_text(zone.polygon.outer[0]) + " would have " +
-                               std::to_string(vertices) + " vertices, at most " +
-                               std::to_string(kMaxVerticesPerZone) +
-                               " are allowed: cut long zones with --max-length");
+      throw std::runtime_error(
+          "zone '" + zone.name + "' near " + point_text(zone.polygon.outer[0]) + " would have " +
+          std::to_string(vertices) + " vertices, at most " + std::to_string(kMaxVerticesPerZone) +
+          " are allowed: cut long zones with --max-length");
     }
   }
 
@@ -166,7 +165,8 @@ class Drawer {
       });
       for (std::size_t i = 0; i < segments.size(); ++i) {
         if (i > 0 && distance_m(segments[i].p, segments[i].q) < kLeastPortal_m) break;
-        auto a = static_cast<std::uint32_t>(pair.first), b = static_cast<std::uint32_t>(pair.second);
+        auto a = static_cast<std::uint32_t>(pair.first),
+             b = static_cast<std::uint32_t>(pair.second);
         if (result_.plan.zones[b].name < result_.plan.zones[a].name) std::swap(a, b);
         std::string name =
             fresh_portal_name(result_.plan.zones[a].name, result_.plan.zones[b].name, taken);
@@ -175,7 +175,8 @@ class Drawer {
     }
     const std::vector<std::size_t> portals = portals_per_zone(result_.plan);
     for (std::size_t i = 0; i < portals.size(); ++i) {
-      if (portals[i] == 0 && portals.size() > 1) result_.apart.push_back(result_.plan.zones[i].name);
+      if (portals[i] == 0 && portals.size() > 1)
+        result_.apart.push_back(result_.plan.zones[i].name);
     }
   }
 

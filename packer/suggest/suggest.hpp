@@ -21,22 +21,22 @@ struct Options {
   Method method = Method::kBasins;
   double door_ratio = 0.8;
   double min_area_m2 = 1.5;
-  double max_length_m = 0;       // 0: corridors of any length
-  double square_m = 5;           // kGrid
-  std::vector<PathPlace> path;   // kPath
+  double max_length_m = 0;      // 0: corridors of any length
+  double square_m = 5;          // kGrid
+  std::vector<PathPlace> path;  // kPath
 };
 
 // Where a grid lies in the map.
 struct GridPlace {
-  Point2 corner;              // the lower left corner of cell 0
-  double cos = 1, sin = 0;    // of its yaw
+  Point2 corner;            // the lower left corner of cell 0
+  double cos = 1, sin = 0;  // of its yaw
 };
 
 struct Suggestion {
   ZonePlan plan;
-  Regions regions;                    // of each cell: the index into plan.zones
-  std::vector<std::string> apart;     // zones that no portal leads to
-  std::size_t dropped_cells = 0;      // free cells in no zone
+  Regions regions;                 // of each cell: the index into plan.zones
+  std::vector<std::string> apart;  // zones that no portal leads to
+  std::size_t dropped_cells = 0;   // free cells in no zone
 };
 
 // Throws std::runtime_error when nothing is free or a zone has more vertices than a pack can hold.

@@ -41,15 +41,15 @@ ordered_json feature(const PlannedZone& zone) {
 
 ordered_json feature(const PlannedPortal& portal, const ZonePlan& plan) {
   const auto& [p, q] = portal.segment;
-  return {{"type", "Feature"},
-          {"properties",
-           {{"name", portal.name},
-            {"portal", true},
-            {"zones", {plan.zones[portal.zone_a].name, plan.zones[portal.zone_b].name}},
-            {"width_m", rounded(distance_m(p, q), 100)}}},
-          {"geometry",
-           {{"type", "LineString"},
-            {"coordinates", ordered_json::array({position(p), position(q)})}}}};
+  return {
+      {"type", "Feature"},
+      {"properties",
+       {{"name", portal.name},
+        {"portal", true},
+        {"zones", {plan.zones[portal.zone_a].name, plan.zones[portal.zone_b].name}},
+        {"width_m", rounded(distance_m(p, q), 100)}}},
+      {"geometry",
+       {{"type", "LineString"}, {"coordinates", ordered_json::array({position(p), position(q)})}}}};
 }
 
 }  // namespace
@@ -57,7 +57,8 @@ ordered_json feature(const PlannedPortal& portal, const ZonePlan& plan) {
 std::string zones_geojson(const ZonePlan& plan) {
   std::string text =
       "{\"type\": \"FeatureCollection\",\n"
-      " \"crs\": {\"type\": \"name\", \"properties\": {\"name\": \"urn:ogc:def:crs:EPSG::3857\"}},\n"
+      " \"crs\": {\"type\": \"name\", \"properties\": {\"name\": "
+      "\"urn:ogc:def:crs:EPSG::3857\"}},\n"
       " \"features\": [";
   const char* separator = "\n";
   for (const PlannedZone& zone : plan.zones) {

@@ -36,7 +36,8 @@ struct Opening {
 
 class Architect {
  public:
-  explicit Architect(const PlanRecipe& recipe) : recipe_(recipe), random_(recipe.seed * 7919 + 17) {}
+  explicit Architect(const PlanRecipe& recipe)
+      : recipe_(recipe), random_(recipe.seed * 7919 + 17) {}
 
   DrawnPlan run() {
     wall_m_ = between(0.1, 0.3);
@@ -211,17 +212,19 @@ class Architect {
   void open(std::size_t a, std::size_t b, const Rect& wall) {
     const bool along_x = wall.width() > wall.height();
     const double length = std::max(wall.width(), wall.height());
-    Opening opening{a, b, 0, 0, std::min(between(0.7, 1.2), length - wall_m_ - 0.2), along_x,
-                    chance(0.5)};
-    const bool big = recipe_.layout == PlanRecipe::Layout::kLobby && lobby_ == a &&
-                     rooms_[b].corridor;
+    Opening opening{a,       b,          0, 0, std::min(between(0.7, 1.2), length - wall_m_ - 0.2),
+                    along_x, chance(0.5)};
+    const bool big =
+        recipe_.layout == PlanRecipe::Layout::kLobby && lobby_ == a && rooms_[b].corridor;
     if (big) {  // the corridor ends in the lobby, as wide as it is
       opening.width = length - wall_m_;
       opening.leaf = false;
     }
     const double room = length - opening.width - wall_m_;
     const double at = wall_m_ / 2 + opening.width / 2 +
-                      (big ? 0 : chance(0.5) ? std::min(0.15, room) : between(0, 1) * room);
+                      (big           ? 0
+                       : chance(0.5) ? std::min(0.15, room)
+                                     : between(0, 1) * room);
     opening.x = along_x ? wall.x0 + at : wall.x0;
     opening.y = along_x ? wall.y0 : wall.y0 + at;
     openings_.push_back(opening);
@@ -301,7 +304,8 @@ class Architect {
         }
       }
       if (o.leaf && recipe_.scanned) {  // open by 90 degrees, never into a corridor
-        const std::int32_t above = o.along_x ? at(o.x, o.y + half + 0.2) : at(o.x + half + 0.2, o.y);
+        const std::int32_t above =
+            o.along_x ? at(o.x, o.y + half + 0.2) : at(o.x + half + 0.2, o.y);
         const bool up = above >= 0 && !rooms_[static_cast<std::size_t>(above)].corridor;
         const double from = up ? half : -half - o.width, to = up ? half + o.width : -half;
         if (o.along_x) {

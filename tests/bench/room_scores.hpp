@@ -12,7 +12,7 @@
 namespace zonepack::bench {
 
 struct RoomScores {
-  double iou = 0, mcc = 0;     // sums over rooms
+  double iou = 0, mcc = 0;  // sums over rooms
   double worst_iou = 1;
   std::size_t rooms = 0, zones = 0;
   std::size_t cells = 0, outside = 0;  // of rooms; in no zone

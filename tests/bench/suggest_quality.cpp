@@ -34,8 +34,9 @@ void write_picture(const std::string& path, const DrawnPlan& plan,
         const std::int32_t id = plan.space.free[i] != 0 ? (*list)[i] : -2;
         const auto hue = static_cast<std::uint32_t>(id + 7) * 2654435761u;
         for (int k = 0; k < 3; ++k) {
-          out.put(id == -2 ? '\0' : id == -1 ? '\xff'
-                           : static_cast<char>(90 + (hue >> (8 * k) & 0xff) * 150 / 255));
+          out.put(id == -2   ? '\0'
+                  : id == -1 ? '\xff'
+                             : static_cast<char>(90 + (hue >> (8 * k) & 0xff) * 150 / 255));
         }
       }
     }
@@ -43,7 +44,8 @@ void write_picture(const std::string& path, const DrawnPlan& plan,
 }
 
 // Of each cell that is free, the zone that holds its centre.
-std::vector<std::int32_t> zone_of_cells(const packer::ServedMap& map, const packer::ZonePlan& plan) {
+std::vector<std::int32_t> zone_of_cells(const packer::ServedMap& map,
+                                        const packer::ZonePlan& plan) {
   const packer::MapImage& image = map.image;
   std::vector<std::int32_t> zone_of(image.cells.size(), -1);
   for (std::size_t z = 0; z < plan.zones.size(); ++z) {
@@ -54,7 +56,8 @@ std::vector<std::int32_t> zone_of_cells(const packer::ServedMap& map, const pack
       const auto row = static_cast<double>(i / image.width);
       const Point2 p{image.x_min_m + (column + 0.5) * image.resolution_m,
                      image.y_min_m + (row + 0.5) * image.resolution_m};
-      if (p.x_m < box.min.x_m || p.x_m > box.max.x_m || p.y_m < box.min.y_m || p.y_m > box.max.y_m) {
+      if (p.x_m < box.min.x_m || p.x_m > box.max.x_m || p.y_m < box.min.y_m ||
+          p.y_m > box.max.y_m) {
         continue;
       }
       if (side_of(plan.zones[z].polygon, p) != Side::kOutside) {
@@ -69,14 +72,13 @@ int compare(const std::string& grid, const std::string& truth, const std::string
   const packer::ServedMap map = packer::read_served_map(grid);
   const packer::ZonePlan drawn = packer::load_zone_file(truth).plan;
   const packer::ZonePlan suggested = packer::load_zone_file(zones).plan;
-  const RoomScores scores =
-      score_rooms(zone_of_cells(map, drawn), zone_of_cells(map, suggested));
+  const RoomScores scores = score_rooms(zone_of_cells(map, drawn), zone_of_cells(map, suggested));
   const auto rooms = static_cast<double>(scores.rooms);
-  std::printf("%zu rooms, %zu zones: MCC %.3f, IoU %.3f, %zu rooms with an IoU under 0.6, %.2f %% of "
-              "their free ground in no zone\n",
-              scores.rooms, suggested.zones.size(), scores.mcc / rooms, scores.iou / rooms,
-              scores.poor,
-              100.0 * static_cast<double>(scores.outside) / static_cast<double>(scores.cells));
+  std::printf(
+      "%zu rooms, %zu zones: MCC %.3f, IoU %.3f, %zu rooms with an IoU under 0.6, %.2f %% of "
+      "their free ground in no zone\n",
+      scores.rooms, suggested.zones.size(), scores.mcc / rooms, scores.iou / rooms, scores.poor,
+      100.0 * static_cast<double>(scores.outside) / static_cast<double>(scores.cells));
   return 0;
 }
 
@@ -109,8 +111,10 @@ int run(int argc, char** argv) {
           recipe.seed = static_cast<std::uint64_t>(seed);
           DrawnPlan plan = draw_plan(recipe);
           const std::clock_t start = std::clock();
-          const packer::suggest::Suggestion found = packer::suggest::suggest(plan.space, {}, options);
-          most_ms = std::max(most_ms, 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+          const packer::suggest::Suggestion found =
+              packer::suggest::suggest(plan.space, {}, options);
+          most_ms =
+              std::max(most_ms, 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
           const auto checked = packer::parse_zone_file(packer::zones_geojson(found.plan));
           for (const auto& fault : checked.findings.faults) {
             ++faulty;
@@ -128,15 +132,17 @@ int run(int argc, char** argv) {
         const auto rooms = static_cast<double>(sum.rooms);
         std::printf("%-28s %6zu %6zu %7.3f %7.3f %6zu %7.3f%% %9.3f %7.0f\n",
                     name_of(recipe).c_str(), sum.rooms, sum.zones, sum.mcc / rooms, sum.iou / rooms,
-                    sum.poor, 100.0 * static_cast<double>(sum.outside) / static_cast<double>(sum.cells),
+                    sum.poor,
+                    100.0 * static_cast<double>(sum.outside) / static_cast<double>(sum.cells),
                     sum.worst_iou, most_ms);
         all[furnished ? 1 : 0].add(sum);
       }
     }
     const RoomScores& sum = all[furnished ? 1 : 0];
     const auto rooms = static_cast<double>(sum.rooms);
-    std::printf("%-28s %6zu %6zu %7.3f %7.3f %6zu %7.3f%%\n", furnished ? "all furnished" : "all empty",
-                sum.rooms, sum.zones, sum.mcc / rooms, sum.iou / rooms, sum.poor,
+    std::printf("%-28s %6zu %6zu %7.3f %7.3f %6zu %7.3f%%\n",
+                furnished ? "all furnished" : "all empty", sum.rooms, sum.zones, sum.mcc / rooms,
+                sum.iou / rooms, sum.poor,
                 100.0 * static_cast<double>(sum.outside) / static_cast<double>(sum.cells));
   }
   return faulty == 0 ? 0 : 1;

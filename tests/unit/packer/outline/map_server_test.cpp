@@ -35,19 +35,17 @@ class ServedMapTest : public testing::Test {
 TEST_F(ServedMapTest, ReadsWhiteAsFreeBlackAsOccupiedAndGreyAsUnknown) {
   // Upper row: 0, 205, 254; lower row: 255, 100, 60. Occupied is (255 - grey) / 255: 100 gives
   // 0.61, 205 gives 0.196, 60 gives 0.76.
-  write("map.pgm", std::string("P5\n# made by hand\n3 2\n255\n") + '\x00' + '\xcd' + '\xfe' + '\xff' +
-                       '\x64' + '\x3c');
-  const ServedMap map =
-      read(base_ + "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  write("map.pgm", std::string("P5\n# made by hand\n3 2\n255\n") + '\x00' + '\xcd' + '\xfe' +
+                       '\xff' + '\x64' + '\x3c');
+  const ServedMap map = read(base_ + "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
   EXPECT_EQ(map.image.width, 3u);
   EXPECT_EQ(map.image.height, 2u);
   EXPECT_EQ(map.image.resolution_m, 0.5);
   EXPECT_EQ(map.image.x_min_m, 1);
   EXPECT_EQ(map.image.y_min_m, -2);
   EXPECT_EQ(map.yaw_rad, 0.25);
-  EXPECT_EQ(map.image.cells,
-            (std::vector<Cell>{Cell::kFree, Cell::kUnknown, Cell::kOccupied, Cell::kOccupied,
-                               Cell::kUnknown, Cell::kFree}));
+  EXPECT_EQ(map.image.cells, (std::vector<Cell>{Cell::kFree, Cell::kUnknown, Cell::kOccupied,
+                                                Cell::kOccupied, Cell::kUnknown, Cell::kFree}));
 }
 
 TEST_F(ServedMapTest, ReadsNumbersAsText) {
@@ -67,16 +65,18 @@ TEST_F(ServedMapTest, ReadsNegatedAndRawMaps) {
 TEST_F(ServedMapTest, ReadsPngs) {
   // The palette: white, black.
   const std::vector<std::uint8_t> pixels{0, 1, 1, 0};
-  write("map.png", to_png(pixels, 2, {PngColor{255, 255, 255, 255}, PngColor{0, 0, 0, 255},
-                                      PngColor{}, PngColor{}}));
+  write("map.png",
+        to_png(pixels, 2,
+               {PngColor{255, 255, 255, 255}, PngColor{0, 0, 0, 255}, PngColor{}, PngColor{}}));
   const ServedMap map = read("image: map.png\nresolution: 0.05\norigin: [0, 0, 0]\n");
-  EXPECT_EQ(map.image.cells, (std::vector<Cell>{Cell::kOccupied, Cell::kFree, Cell::kFree,
-                                                Cell::kOccupied}));
+  EXPECT_EQ(map.image.cells,
+            (std::vector<Cell>{Cell::kOccupied, Cell::kFree, Cell::kFree, Cell::kOccupied}));
 }
 
 TEST_F(ServedMapTest, NamesTheKeyThatIsWrong) {
   write("map.pgm", "P2\n2 1\n15\n0 15\n");
-  EXPECT_THAT(refusal("resolution: 0.05\norigin: [0, 0, 0]\n"), testing::HasSubstr("'image' is missing"));
+  EXPECT_THAT(refusal("resolution: 0.05\norigin: [0, 0, 0]\n"),
+              testing::HasSubstr("'image' is missing"));
   EXPECT_THAT(refusal("image: map.pgm\norigin: [0, 0, 0]\n"),
               testing::HasSubstr("'resolution' is missing"));
   EXPECT_THAT(refusal("image: map.pgm\nresolution: .nan\norigin: [0, 0, 0]\n"),
@@ -85,7 +85,8 @@ TEST_F(ServedMapTest, NamesTheKeyThatIsWrong) {
               testing::HasSubstr("expected 0.001 to 10 metres"));
   EXPECT_THAT(refusal("image: map.pgm\nresolution: 0.05\norigin: [0, 0]\n"),
               testing::HasSubstr("'origin' must be [x, y, yaw]"));
-  EXPECT_THAT(refusal(base_ + "mode: fuzzy\n"), testing::HasSubstr("expected trinary, scale or raw"));
+  EXPECT_THAT(refusal(base_ + "mode: fuzzy\n"),
+              testing::HasSubstr("expected trinary, scale or raw"));
   EXPECT_THAT(refusal(base_ + "free_thresh: 0.9\n"), testing::HasSubstr("'free_thresh'"));
   EXPECT_THAT(refusal(base_ + "negate: maybe\n"), testing::HasSubstr("expected 0 or 1"));
   EXPECT_THAT(refusal("- a\n"), testing::HasSubstr("is no list of keys"));
@@ -100,7 +101,8 @@ TEST_F(ServedMapTest, NamesTheImageThatIsWrong) {
   write("map.pgm", "GIF89a");
   EXPECT_THAT(refusal(base_), testing::HasSubstr("neither a PGM"));
   write("map.pgm", "P5\n3 2\n255\nab");
-  EXPECT_THAT(refusal(base_), testing::HasSubstr("3 x 2 pixels need 6 bytes after the header, it has 2"));
+  EXPECT_THAT(refusal(base_),
+              testing::HasSubstr("3 x 2 pixels need 6 bytes after the header, it has 2"));
   write("map.pgm", "P5\n4000000000 2\n255\n");
   EXPECT_THAT(refusal(base_), testing::HasSubstr("its width is no number that fits"));
   write("map.pgm", "P5\n100000 100000\n255\n");

@@ -96,8 +96,9 @@ TEST(Suggest, KeepsEveryCellOnItsSideHoweverRaggedTheWalls) {
       for (std::int32_t x = 2; x + 2 < space.columns; ++x) {
         const auto cell = static_cast<std::size_t>(space.at(x, y));
         // Most noise stands next to walls, some anywhere.
-        const bool at_wall = space.free[cell] != space.free[cell + 1] ||
-                             space.free[cell] != space.free[cell + static_cast<std::size_t>(space.columns)];
+        const bool at_wall =
+            space.free[cell] != space.free[cell + 1] ||
+            space.free[cell] != space.free[cell + static_cast<std::size_t>(space.columns)];
         if (random() % (at_wall ? 4 : 60) == 0) space.free[cell] ^= 1;
       }
     }
@@ -112,10 +113,10 @@ TEST(Suggest, KeepsEveryCellOnItsSideHoweverRaggedTheWalls) {
     MeasuringSteps steps(1'000'000'000);
     for (std::size_t a = 0; a < checked.plan.zones.size(); ++a) {
       for (std::size_t b = a + 1; b < checked.plan.zones.size(); ++b) {
-        ASSERT_NEAR(common_area_m2(checked.plan.zones[a].polygon, checked.plan.zones[b].polygon,
-                                   steps)
-                        .value(),
-                    0, 1e-9);
+        ASSERT_NEAR(
+            common_area_m2(checked.plan.zones[a].polygon, checked.plan.zones[b].polygon, steps)
+                .value(),
+            0, 1e-9);
       }
     }
   }
@@ -135,8 +136,8 @@ TEST(Suggest, JoinsByAPortalAllZonesThatTouchOnFreeGround) {
       for (const CellIndex near : {space.at(x + 1, y), space.at(x, y + 1)}) {
         const Region a = found.regions.at(space.at(x, y)), b = found.regions.at(near);
         if (a == b || !space.is_free(space.at(x, y)) || !space.is_free(near)) continue;
-        EXPECT_TRUE(joined.contains(std::minmax(static_cast<std::uint32_t>(a),
-                                                static_cast<std::uint32_t>(b))));
+        EXPECT_TRUE(joined.contains(
+            std::minmax(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b))));
       }
     }
   }
