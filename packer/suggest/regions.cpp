@@ -57,7 +57,7 @@ void renumber(Regions& regions, const FreeSpace& space) {
 
 void fold_small(Regions& regions, const FreeSpace& space,
                 const std::vector<std::int32_t>& clearance2, double least_m2,
-                double least_width_m) {
+                const Islets& islets) {
   const auto count = static_cast<std::size_t>(regions.count);
   std::vector<std::size_t> cells = cells_of_each(regions);
   std::vector<std::int32_t> peak2(count);
@@ -96,9 +96,10 @@ void fold_small(Regions& regions, const FreeSpace& space,
   for (Region region = 0; region < regions.count; ++region) {
     becomes[static_cast<std::size_t>(region)] = region;
     note(region);
-    const double width_cells = least_width_m / space.cell_m / 2;
+    const double width_cells = islets.least_width_m / space.cell_m / 2;
     if (passes[static_cast<std::size_t>(region)].empty() &&
-        static_cast<double>(peak2[static_cast<std::size_t>(region)]) < width_cells * width_cells) {
+        (space.area_m2(cells[static_cast<std::size_t>(region)]) < islets.least_m2 ||
+         peak2[static_cast<std::size_t>(region)] < width_cells * width_cells)) {
       becomes[static_cast<std::size_t>(region)] = kNoRegion;
     }
   }

@@ -26,11 +26,16 @@ std::vector<std::size_t> cells_of_each(const Regions& regions);
 // Cuts regions that fell apart into connected ones; numbers all by their lowest cell.
 void renumber(Regions& regions, const FreeSpace& space);
 
-// Folds each region under `least_m2` into the neighbour with the widest pass, smallest first. One
-// without neighbours is dropped when it is smaller than this, or nowhere as wide as
-// `least_width_m`: no robot stands there. `clearance2` as from squared_clearance().
+// Regions without neighbours that are dropped: smaller ones, and those that are nowhere as wide,
+// where no robot stands.
+struct Islets {
+  double least_m2 = 0, least_width_m = 0;
+};
+
+// Folds each region under `least_m2` into the neighbour with the widest pass, smallest first, and
+// drops islets. `clearance2` as from squared_clearance().
 void fold_small(Regions& regions, const FreeSpace& space,
-                const std::vector<std::int32_t>& clearance2, double least_m2, double least_width_m);
+                const std::vector<std::int32_t>& clearance2, double least_m2, const Islets& islets);
 
 // Gives cells inside a region's outline that belong to none to this region, where such a gap is
 // smaller than `most_m2` and touches no other region.

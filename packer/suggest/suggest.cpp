@@ -12,6 +12,7 @@
 #include "packer/suggest/basins.hpp"
 #include "packer/suggest/borders.hpp"
 #include "packer/suggest/doors.hpp"
+#include "packer/suggest/islets.hpp"
 #include "packer/suggest/kinds.hpp"
 #include "packer/suggest/passes.hpp"
 #include "packer/zones/findings.hpp"
@@ -23,7 +24,10 @@ namespace {
 // Free-standing furniture, a table with its chairs. Half a square metre leaves tables that cut
 // rooms in two; far more would free the pillars of a hall.
 constexpr double kClutter_m2 = 2.5;
-constexpr double kRobotWidth_m = 0.6;  // an islet that is nowhere wider is the inside of a wall
+// A smaller closed room is a corner behind furniture; one that is nowhere wider, the inside of a
+// wall.
+constexpr Islets kIslets{.least_m2 = 4, .least_width_m = 0.6};
+constexpr double kBridge_m = 1;  // from a corner behind furniture to its room
 constexpr double kLooseRatio = 0.65;
 constexpr double kDoorReach_m = 0.5;
 constexpr double kGap_m2 = 2;  // a pillar this small needs no hole
@@ -198,7 +202,7 @@ Regions regions_of(FreeSpace& space, const Options& options) {
     case Method::kPath: {
       remove_clutter(space, kClutter_m2);
       Regions regions = stretches_of(space, options.path);
-      fold_small(regions, space, squared_clearance(space), options.min_area_m2, 0);
+      fold_small(regions, space, squared_clearance(space), options.min_area_m2, {});
       return regions;
     }
     case Method::kBasins:
@@ -213,14 +217,15 @@ Regions rooms_of(FreeSpace& space, const Options& options) {
   remove_clutter(space, kClutter_m2);
   const std::vector<std::int32_t> clearance2 = squared_clearance(space);
   Regions regions = basins_of(space, clearance2, options.door_ratio);
-  fold_small(regions, space, clearance2, options.min_area_m2, kRobotWidth_m);
+  fold_small(regions, space, clearance2, options.min_area_m2, kIslets);
   straighten_doors(regions, space, kDoorReach_m);
   renumber(regions, space);
   join_without_door(regions, space, clearance2, std::min(kLooseRatio, options.door_ratio));
   cut_arms(regions, space, clearance2);
   straighten_doors(regions, space, kDoorReach_m);
   renumber(regions, space);
-  fold_small(regions, space, clearance2, options.min_area_m2, kRobotWidth_m);
+  fold_small(regions, space, clearance2, options.min_area_m2, kIslets);
+  fold_islets(regions, space, kBridge_m);
   return regions;
 }
 
@@ -239,10 +244,10 @@ Suggestion suggest(FreeSpace space, const GridPlace& place, const Options& optio
   result.regions = whole;
   if (options.max_length_m > 0) {
     cut_long(result.regions, space, options.max_length_m);
-    fold_small(result.regions, space, clearance2, options.min_area_m2, 0);
+    fold_small(result.regions, space, clearance2, options.min_area_m2, {});
     straighten_doors(result.regions, space, kDoorReach_m);
     renumber(result.regions, space);
-    fold_small(result.regions, space, clearance2, options.min_area_m2, 0);
+    fold_small(result.regions, space, clearance2, options.min_area_m2, {});
   }
   fill_gaps(result.regions, space, kGap_m2);
   open_corners(result.regions, space);

@@ -25,7 +25,7 @@ TEST(FoldSmall, GivesACrumbToTheNeighbourWithTheWidestPass) {
   const Rows rows{"########", "#aabbcc#", "#aa#bcc#", "#aa##cc#", "########"};
   Regions regions = drawn_regions(rows);
   const FreeSpace space = space_of(rows);
-  fold_small(regions, space, squared_clearance(space), 1.0, 0);  // b has 3 cells of 0.25 m2
+  fold_small(regions, space, squared_clearance(space), 1.0, {});  // b has 3 cells of 0.25 m2
   EXPECT_EQ(drawn(regions, space),
             (Rows{"########", "#aabbbb#", "#aa#bbb#", "#aa##bb#", "########"}));
 }
@@ -33,7 +33,7 @@ TEST(FoldSmall, GivesACrumbToTheNeighbourWithTheWidestPass) {
 TEST(FoldSmall, DropsAnIsletWithoutNeighbours) {
   Regions regions = drawn_regions({"#######", "#a#bbb#", "###bbb#", "#######"});
   const FreeSpace space = space_of({"#######", "#.#...#", "###...#", "#######"});
-  fold_small(regions, space, squared_clearance(space), 1.0, 0);
+  fold_small(regions, space, squared_clearance(space), 1.0, {});
   EXPECT_EQ(drawn(regions, space), (Rows{"#######", "###aaa#", "###aaa#", "#######"}));
 }
 
@@ -42,7 +42,7 @@ TEST(FoldSmall, DropsTheHollowOfAWallHoweverLong) {
   const Rows rows{"##########", "#aaaaaaaa#", "##########"};
   Regions regions = drawn_regions(rows);
   const FreeSpace space = space_of(rows);
-  fold_small(regions, space, squared_clearance(space), 1.0, 1.2);
+  fold_small(regions, space, squared_clearance(space), 1.0, {.least_m2 = 0, .least_width_m = 1.2});
   EXPECT_EQ(regions.count, 0);
 }
 
