@@ -90,10 +90,7 @@ class Tracer {
   std::vector<Border> borders_;
 };
 
-// Positive where `p` is to the left of the line from `a` to `b`; all in half cells.
-std::int64_t side(Corner a, Corner b, Corner p) {
-  return std::int64_t{b.x - a.x} * (p.y - a.y) - std::int64_t{b.y - a.y} * (p.x - a.x);
-}
+// In half cells, as centres are.
 Corner doubled(Corner c) { return {2 * c.x, 2 * c.y}; }
 
 // The centres of the two cells beside the edge from `a` to `b`, in half cells: left, right.
@@ -171,13 +168,9 @@ Border simplified(const Border& border) {
   }
   // A loop is cut where it is furthest from its beginning, so that it stays a ring.
   const Corner first = border.corners.front();
-  const auto distance2 = [first](Corner c) {
-    return std::int64_t{c.x - first.x} * (c.x - first.x) +
-           std::int64_t{c.y - first.y} * (c.y - first.y);
-  };
   std::size_t far = 0;
   for (std::size_t i = 1; i < last; ++i) {
-    if (distance2(border.corners[i]) > distance2(border.corners[far])) far = i;
+    if (distance2(first, border.corners[i]) > distance2(first, border.corners[far])) far = i;
   }
   simplifier.add_from(0, far, result.corners);
   result.corners.pop_back();

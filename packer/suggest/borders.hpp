@@ -16,6 +16,15 @@ struct Corner {
   friend bool operator==(const Corner&, const Corner&) = default;
 };
 
+inline std::int64_t distance2(Corner a, Corner b) noexcept {
+  return std::int64_t{a.x - b.x} * (a.x - b.x) + std::int64_t{a.y - b.y} * (a.y - b.y);
+}
+
+// Positive where `p` is to the left of the line from `a` to `b`.
+inline std::int64_t side(Corner a, Corner b, Corner p) noexcept {
+  return std::int64_t{b.x - a.x} * (p.y - a.y) - std::int64_t{b.y - a.y} * (p.x - a.x);
+}
+
 // A line along cell edges from one node (where three regions meet, or two regions and a wall) to
 // the next; a loop without nodes begins and ends at its first corner.
 struct Border {

@@ -12,14 +12,6 @@
 namespace zonepack::packer::suggest {
 namespace {
 
-std::int64_t distance2(Corner a, Corner b) {
-  return std::int64_t{a.x - b.x} * (a.x - b.x) + std::int64_t{a.y - b.y} * (a.y - b.y);
-}
-
-std::int64_t side(Corner a, Corner b, Corner p) {
-  return std::int64_t{b.x - a.x} * (p.y - a.y) - std::int64_t{b.y - a.y} * (p.x - a.x);
-}
-
 class DoorStraightener {
  public:
   DoorStraightener(Regions& regions, const FreeSpace& space, double reach_m)

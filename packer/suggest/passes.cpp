@@ -15,10 +15,6 @@ namespace {
 constexpr double kAlongWall_m = 0.4;  // how far the outlines are followed from a door's end
 constexpr double kThinWall_m = 0.45;  // how far apart they are there at most
 
-std::int64_t distance2(Corner a, Corner b) {
-  return std::int64_t{a.x - b.x} * (a.x - b.x) + std::int64_t{a.y - b.y} * (a.y - b.y);
-}
-
 class PassJudge {
  public:
   PassJudge(const Regions& regions, const FreeSpace& space,
