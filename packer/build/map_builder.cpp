@@ -346,7 +346,7 @@ void MapBuilder::finish(MapFolder& folder) {
                     " unlinked=" + kUnlinked[static_cast<std::size_t>(options_.unlinked)] +
                     " max_zone_bytes=" + std::to_string(options_.max_zone_bytes) +
                     " snap=" + number_text(options_.snap_m);
-  content.detector = source_->outline().detector;
+  content.detector = options_.detector.empty() ? source_->outline().detector : options_.detector;
   content.source_feature_count = source_->outline().feature_count;
   content.source_bytes = summary_.source_bytes;
   const Bytes manifest = manifest_bytes(content);

@@ -35,7 +35,8 @@ struct BuildOptions {
   double snap_m = kDefaultSnap_m;
   UnlinkedPolicy unlinked = UnlinkedPolicy::kOdometry;
   DamagedPolicy damaged = DamagedPolicy::kError;
-  unsigned jobs = 0;  // 0: one per core
+  unsigned jobs = 0;     // 0: one per core
+  std::string detector;  // what found the features, where the source is wrong; empty: as it says
 };
 
 struct BuildSummary {

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <iomanip>
 #include <iostream>
 #include <map>
@@ -211,6 +212,19 @@ void add_build_command(CLI::App& app, int& exit_code) {
       *command, "--damaged", options.damaged,
       {{"error", DamagedPolicy::kError}, {"skip", DamagedPolicy::kSkip}},
       "signatures that cannot be read whole: error (default) or skip");
+  command
+      ->add_option(
+          "--detector", options.detector,
+          "what found the features, where the map does not say it or says it wrongly: "
+          "RTAB-Map's number and settings, such as '8 Kp/MaxFeatures:400;GFTT/MinDistance:7'")
+      ->check([](const std::string& text) {
+        const bool fits =
+            !text.empty() && text.size() <= 1000 && text[0] >= '0' && text[0] <= '9' &&
+            std::ranges::all_of(text, [](unsigned char c) { return c >= 32 && c < 127; });
+        return fits ? std::string()
+                    : "'" + text + "' does not begin with RTAB-Map's number of a detector";
+      })
+      ->type_name("TEXT");
   command->add_option("--jobs", options.jobs, "threads; default one per core")
       ->check(CLI::Range(1, 256))
       ->type_name("N");

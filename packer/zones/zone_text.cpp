@@ -9,12 +9,14 @@ namespace {
 
 using nlohmann::ordered_json;
 
-double rounded(double value, double per_metre) {
+double rounded_to(double value, double per_metre) {
   const double result = std::floor(value * per_metre + 0.5) / per_metre;
   return result == 0 ? 0 : result;  // no -0
 }
 
-ordered_json position(Point2 point) { return {rounded(point.x_m, 1e4), rounded(point.y_m, 1e4)}; }
+ordered_json position(Point2 point) {
+  return {rounded_to(point.x_m, 1e4), rounded_to(point.y_m, 1e4)};
+}
 
 ordered_json closed(const Ring& ring) {
   ordered_json positions = ordered_json::array();
@@ -31,7 +33,7 @@ ordered_json feature(const PlannedZone& zone) {
   }
   if (zone.z_min_m) properties["z_min"] = *zone.z_min_m;
   if (zone.z_max_m) properties["z_max"] = *zone.z_max_m;
-  properties["area_m2"] = rounded(area_m2(zone.polygon), 100);
+  properties["area_m2"] = rounded_to(area_m2(zone.polygon), 100);
   ordered_json rings = ordered_json::array({closed(zone.polygon.outer)});
   for (const Ring& hole : zone.polygon.holes) rings.push_back(closed(hole));
   return {{"type", "Feature"},
@@ -47,7 +49,7 @@ ordered_json feature(const PlannedPortal& portal, const ZonePlan& plan) {
        {{"name", portal.name},
         {"portal", true},
         {"zones", {plan.zones[portal.zone_a].name, plan.zones[portal.zone_b].name}},
-        {"width_m", rounded(distance_m(p, q), 100)}}},
+        {"width_m", rounded_to(distance_m(p, q), 100)}}},
       {"geometry",
        {{"type", "LineString"}, {"coordinates", ordered_json::array({position(p), position(q)})}}}};
 }
