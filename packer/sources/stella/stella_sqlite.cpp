@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kKeypointBytes =
     28;  // x, y, size, angle, response float32; octave, class int32
 constexpr std::size_t kDescriptorBytes = 32;
-constexpr std::size_t kMostKeypoints = 1'000'000;
+constexpr std::size_t kMostKeypointsOfRow = 1'000'000;
 
 template <typename T>
 T value_at(std::span<const std::byte> bytes, std::size_t offset) {
@@ -96,7 +96,7 @@ void read_keyframe(const SqliteQuery& row, const CellPlace& place, StellaKeyfram
   }
   require_camera_pose(keyframe.T_camera_world, place.at("keyframes.pose_cw"));
   const std::int32_t keypoints = int32_cell(row, 5, place.at("keyframes.n_keypts"));
-  if (keypoints < 0 || static_cast<std::size_t>(keypoints) > kMostKeypoints) {
+  if (keypoints < 0 || static_cast<std::size_t>(keypoints) > kMostKeypointsOfRow) {
     place.at("keyframes.n_keypts")
         .damaged("expected 0 to 1000000, found " + std::to_string(keypoints));
   }
