@@ -290,7 +290,7 @@ void suggest_zones(const SuggestZonesOptions& options, std::ostream& text, order
   text << options.out << ": " << counted(found.plan.zones.size(), "zone") << " (";
   const char* separator = "";
   for (const auto& [kind, count] : kinds_of(found.plan)) {
-    text << separator << counted(count, kind);
+    text << separator << counted(count, kind, kind == "lobby" ? "lobbies" : kind + "s");
     separator = ", ";
   }
   text << ") and " << counted(found.plan.portals.size(), "portal") << " from "
