@@ -9,18 +9,19 @@ namespace zonepack::packer::suggest {
 namespace {
 
 TEST(Kinds, CallALongStripWithTwoNeighboursACorridor) {
-  // Cells of 0.5 m. a is 1 cell wide and 12 long: its clearance is 1 cell, so it counts as 2 cells
-  // wide, 1 m, and 6 m2 are 6 squares of that.
-  const std::vector<std::string> rows{"##############", "#bbbbb#cccccc#", "#aaaaaaaaaaaa#",
-                                      "##############"};
+  // Cells of 0.5 m. a is 1 cell wide and 20 long: its clearance is 1 cell, so it counts as 2 cells
+  // wide, 1 m, and its 5 m2 are 5 squares of that. b has 2.25 m2, c 2.5 m2.
+  const std::vector<std::string> rows{"######################",  //
+                                      "#bbbbbbbbb#cccccccccc#",  //
+                                      "#aaaaaaaaaaaaaaaaaaaa#",  //
+                                      "######################"};
   const Regions regions = drawn_regions(rows);
-  FreeSpace space =
-      drawn_space({"##############", "##.######.####", "#............#", "##############"});
-  std::vector<std::int32_t> clearance2(space.size(), 1);
-  const std::vector<Kind> kinds = kinds_of(regions, space, clearance2);
+  const FreeSpace space = drawn_space(rows);
+  const std::vector<Kind> kinds =
+      kinds_of(regions, space, std::vector<std::int32_t>(space.size(), 1));
   EXPECT_STREQ(kinds[0].name, "corridor");
-  EXPECT_STREQ(kinds[1].name, "closet");  // 1.25 m2
-  EXPECT_DOUBLE_EQ(kinds[2].area_m2, 1.5);
+  EXPECT_STREQ(kinds[1].name, "closet");
+  EXPECT_DOUBLE_EQ(kinds[2].area_m2, 2.5);
 }
 
 TEST(Kinds, AreNumberedByFallingArea) {
