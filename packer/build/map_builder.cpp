@@ -378,6 +378,7 @@ void MapBuilder::finish(MapFolder& folder) {
   }
   summary_.damages = sorted(damages_);
   summary_.packs = std::move(packs_);
+  summary_.plan = std::move(plan_);
 }
 
 }  // namespace

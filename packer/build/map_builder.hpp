@@ -56,6 +56,7 @@ struct BuildSummary {
   std::vector<std::string> warnings;  // complete sentences
   std::vector<std::string> notes;     // how the source was read
   std::vector<std::string> zone_names;
+  ZonePlan plan;                    // after splitting
   std::vector<PackSummary> packs;   // by zone
   ByteCount charged_bytes = 0;      // all zones, default payload: slots x slot size
   ByteCount stored_bytes = 0;       // features, scans, grids and core, as stored in packs

@@ -208,7 +208,8 @@ void draw(const CheckZonesOptions& options, const ZoneFile& file, const Source* 
                  .partition = {},
                  .misdrawn = {},
                  .ground = nullptr,
-                 .wrap = !options.out.ends_with(".html")};
+                 .wrap = !options.out.ends_with(".html"),
+                 .origin = {}};
   if (source != nullptr) {
     map.places = source->counts.places;
     map.partition = source->counts.partition;

@@ -115,8 +115,9 @@ report::PackReport read_pack_report(const std::string& folder, PayloadMask paylo
   return map;
 }
 
-CLI::Option* add_report_option(CLI::App& app, std::string& out, const std::string& help) {
-  return app.add_option("--out", out, help)->type_name("FILE")->check([](const std::string& path) {
+CLI::Option* add_report_option(CLI::App& app, std::string& out, const std::string& help,
+                               const std::string& name) {
+  return app.add_option(name, out, help)->type_name("FILE")->check([](const std::string& path) {
     return report::check_report_name(path).error().message;
   });
 }

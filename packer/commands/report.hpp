@@ -14,8 +14,9 @@ namespace zonepack::packer {
 report::PackReport read_pack_report(const std::string& folder,
                                     PayloadMask payload = kDefaultPayload);
 
-// The option --out of commands that draw: takes names that end in .html, .svg or .png.
-CLI::Option* add_report_option(CLI::App& app, std::string& out, const std::string& help);
+// The option of commands that draw: takes names that end in .html, .svg or .png.
+CLI::Option* add_report_option(CLI::App& app, std::string& out, const std::string& help,
+                               const std::string& name = "--out");
 
 // `zonepack report DIR --out FILE.html|.png|.svg [--payload LIST] [--db DB]`; sets exit_code when
 // it has run.

@@ -156,7 +156,7 @@ std::vector<report::Fact> facts_of(const ZonesOnMap& map) {
        !findings.faults.empty()},
       {"warnings", format_count(findings.warnings.size()), ""},
       {"occupancy grid", ground_text(map), ""}};
-  if (map.ground == nullptr) return facts;
+  if (map.ground == nullptr || map.places.empty()) return facts;
   const std::size_t orphans = map.partition.orphans.size();
   facts.push_back({"in zones", format_count(map.partition.zone_of.size() - orphans),
                    "signatures with an optimised pose"});
@@ -174,7 +174,7 @@ report::Report make_zones_page(const ZonesOnMap& map) {
                   counted(map.zones->plan.portals.size(), "portal") + "; " +
                   counted(findings.faults.size(), "fault") + ", " +
                   counted(findings.warnings.size(), "warning") + ".";
-  if (map.ground != nullptr && !map.zones->plan.zones.empty()) {
+  if (!map.places.empty() && !map.zones->plan.zones.empty()) {
     page.headline += " Of " + counted(map.places.size(), "signature") + ", " +
                      orphans_text(group_orphans(map.partition.orphans), map.zones->plan.zones) +
                      ".";
@@ -201,7 +201,8 @@ report::Report make_zones_page(const ZonesOnMap& map) {
   }
   if (!map.partition.orphans.empty()) page.tables.push_back(orphans_table(map));
   page.tables.push_back(zones_table(map));
-  page.origin = "Drawn by zonepack check-zones from " + map.file + ".";
+  page.origin =
+      map.origin.empty() ? "Drawn by zonepack check-zones from " + map.file + "." : map.origin;
   return page;
 }
 

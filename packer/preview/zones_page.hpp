@@ -23,6 +23,7 @@ struct ZonesOnMap {
   const MapDrawing* ground = nullptr;  // null without a database
   // Tables break long texts into several rows: for a sheet, which does not wrap cells.
   bool wrap = false;
+  std::string origin;  // who drew it from what; empty: check-zones, from the file
 };
 
 // One page: the zones over the occupancy grid, faults and orphans in red, and both as tables.

@@ -98,9 +98,10 @@ ARROWS = {
     "packer/preview": "packer/console packer/decode packer/outline packer/zones platform/base runtime/report",
     "packer/console": "platform platform/base runtime/pack_format",
     "packer/inspect": "packer/console packer/decode packer/verify platform/base runtime/pack_format/file",
+    "packer/suggest": "packer/zones runtime/pack_format",
     "packer/commands": "packer/build packer/console packer/decode packer/export packer/inspect packer/outline"
-                       " packer/preview packer/record packer/sources packer/verify packer/zones platform platform/base"
-                       " platform/command_line runtime/pack_format runtime/pack_format/file runtime/report",
+                       " packer/preview packer/record packer/sources packer/suggest packer/verify packer/zones platform"
+                       " platform/base platform/command_line runtime/pack_format runtime/pack_format/file runtime/report",
     "packer": "platform/command_line platform/signals.hpp packer/commands platform/version runtime/pack_format/file",
 }
 
@@ -113,7 +114,7 @@ FOREIGN = {
     r"lz4": "runtime/pack_format/file runtime/recording packer/build packer/encode",
     r"xxhash": "runtime/pack_format/file",
     r"sodium": "runtime/pack_format/file runtime/run",
-    r"yaml-cpp/": "runtime/settings runtime/live runtime/localize/camera",
+    r"yaml-cpp/": "packer/outline runtime/settings runtime/live runtime/localize/camera",
     r"Eigen/": "packer/align packer/sources/stella runtime/calibrate runtime/localize/camera runtime/localize/features runtime/localize/solve runtime/localize/query runtime/localize/check",
     r"CLI/": "platform/command_line runtime/zoned runtime/ctl runtime/localize/zoneloc packer packer/commands"
              " packer/console",
@@ -121,7 +122,7 @@ FOREIGN = {
     r"zlib\.h": "packer/sources/rtabmap packer/preview",
     r"nlohmann/": "packer/sources/stella packer/commands packer/console packer/inspect packer/outline packer/verify packer/zones",
     r"opencv": "runtime/localize/features",
-    r"(jpeglib|jerror|png)\.h": "runtime/localize/camera runtime/localize/explain",
+    r"(jpeglib|jerror|png)\.h": "packer/outline runtime/localize/camera runtime/localize/explain",
 }
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^">]+)[">]', re.MULTILINE)

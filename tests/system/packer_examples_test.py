@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 # Later commands need what the earlier ones write.
-ORDER = ["outline", "check-zones", "build", "plan", "inspect", "verify", "export", "report", "prune"]
+ORDER = ["outline", "suggest-zones", "check-zones", "build", "plan", "inspect", "verify", "export", "report", "prune"]
 
 
 def help_of(zonepack, *words):

@@ -60,6 +60,13 @@ if(TARGET zonepack)
   set_tests_properties(system/stella system/clouds PROPERTIES TIMEOUT 600)
 endif()
 
+if(TARGET zonepack AND TARGET zoned)
+  add_test(NAME system/suggest_zones
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/suggest_zones_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/suggest_zones PROPERTIES TIMEOUT 600)
+endif()
+
 # Maps that ask for more memory than the budget: at start, at SIGHUP, and after the refusal.
 if(TARGET zonepack AND TARGET zoned)
   zonepack_test_program(hostile/make_hostile_map.cpp zonepack_packer_test_support)
