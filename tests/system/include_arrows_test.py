@@ -80,6 +80,7 @@ ARROWS = {
                                 " runtime/localize/replay runtime/localize/run runtime/protocol runtime/report runtime/run",
 
     "packer/record": "",
+    "packer/align": "packer/record platform/base",
     "packer/sources": "packer/record platform/base",
     "packer/outline": "packer/record packer/sources",
     "packer/zones": "platform/base runtime/pack_format runtime/pack_format/file",
