@@ -3,6 +3,7 @@
 
 #include <lz4.h>
 
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -123,6 +124,12 @@ flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<fb::Change>>> change
 }
 
 }  // namespace
+
+fb::Node node_at(std::int32_t id, const Transform& T_map_base) {
+  // Yaw is for people and pictures. The pose is a row-major 3x4 matrix: [0] is cos, [4] is sin.
+  const float yaw = std::atan2(T_map_base[4], T_map_base[0]);
+  return {T_map_base[3], T_map_base[7], T_map_base[11], yaw, id};
+}
 
 Bytes manifest_bytes(const ManifestContent& content) {
   const ZonePlan& plan = *content.plan;
