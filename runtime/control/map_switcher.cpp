@@ -97,7 +97,8 @@ bool MapSwitcher::room_for(ZoneNeed need) noexcept {
   if (all.slots > next_->slots) return false;
   return map_->memory.used_sum().slots + need.slots <= next_->slots &&
          map_->memory.set_aside(next_->memory.limits().fixed, need.slots) &&
-         next_->memory.set_aside(map_->memory.limits().fixed, static_cast<std::uint32_t>(all.slots));
+         next_->memory.set_aside(map_->memory.limits().fixed,
+                                 static_cast<std::uint32_t>(all.slots));
 }
 
 // True while there may be more to evict.

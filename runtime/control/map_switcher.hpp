@@ -100,7 +100,7 @@ class MapSwitcher {
     SlotChain slots;
   };
   std::array<HandedOver, kMostKept> handed_over_{};  // least recently used first
-  ZoneId looked_at_ = 0;   // zones before this one are evicted, except own_ and kept ones
+  ZoneId looked_at_ = 0;  // zones before this one are evicted, except own_ and kept ones
   std::int64_t begun_ns_ = 0;
 };
 
