@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -18,99 +17,107 @@
 namespace zonepack::packer {
 namespace {
 
-constexpr std::uintmax_t kMostFileBytes = std::uintmax_t{256} << 20;
-constexpr std::size_t kColumns = 8;
-constexpr std::string_view kBlanks = " \t\r";
+namespace fs = std::filesystem;
 
-[[noreturn]] void refuse(const std::filesystem::path& path, std::size_t line,
-                         const std::string& what) {
-  throw std::runtime_error(path.string() + ":" + std::to_string(line) + ": " + what +
-                           "; expected a TUM trajectory, 'stamp x y z qx qy qz qw' a line, in "
-                           "seconds and metres");
+constexpr std::uintmax_t kLongestFile = std::uintmax_t{256} << 20;
+constexpr double kLongestGap_s = 1;
+
+bool is_separator(char c) { return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r'; }
+
+// How many numbers a line begins with, at most eight, and whether nothing else follows.
+struct Numbers {
+  std::array<double, 8> values{};
+  std::size_t count = 0;
+  bool whole = true;
+};
+
+Numbers numbers_in(std::string_view line) {
+  Numbers found;
+  while (true) {
+    while (!line.empty() && is_separator(line.front())) line.remove_prefix(1);
+    if (line.empty()) return found;
+    if (found.count == found.values.size()) break;
+    double& value = found.values[found.count];
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
+    if (error != std::errc() || !std::isfinite(value)) break;
+    line.remove_prefix(static_cast<std::size_t>(end - line.data()));
+    if (!line.empty() && !is_separator(line.front())) break;
+    ++found.count;
+  }
+  found.whole = false;
+  return found;
 }
 
-TimedPosition read_line(std::string_view text, const std::filesystem::path& path,
-                        std::size_t line) {
-  std::array<double, kColumns> values{};
-  std::size_t count = 0;
-  for (;;) {
-    text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-    if (text.empty()) break;
-    const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
-    text.remove_prefix(word.size());
-    if (count == kColumns) refuse(path, line, "more than 8 numbers");
-    const auto read = std::from_chars(word.data(), word.data() + word.size(), values[count]);
-    if (read.ec != std::errc() || read.ptr != word.data() + word.size()) {
-      refuse(path, line, "'" + std::string(word.substr(0, 32)) + "' is no number");
-    }
-    if (!std::isfinite(values[count])) {
-      refuse(path, line, "'" + std::string(word.substr(0, 32)) + "' is not finite");
-    }
-    ++count;
+void require_text_file(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) {
+    throw std::runtime_error(file.string() + ": no such file; expected a trajectory (TUM)");
   }
-  if (count != kColumns) refuse(path, line, std::to_string(count) + " numbers");
-  return {values[0], {values[1], values[2], values[3]}};
+  if (const std::string kind = misplaced_at(file.string(), {}); !kind.empty()) {
+    throw std::runtime_error(file.string() + ": " + kind + "; expected a trajectory (TUM)");
+  }
+  if (fs::file_size(file, error) > kLongestFile && !error) {
+    throw std::runtime_error(file.string() + ": is longer than 256 MiB; thin the trajectory out");
+  }
 }
 
 }  // namespace
 
-Trajectory Trajectory::read(const std::filesystem::path& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    throw std::runtime_error(path.string() + ": is a folder, expected a TUM trajectory");
-  }
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size > kMostFileBytes) {
-    throw std::runtime_error(path.string() + ": is " + std::to_string(size) +
-                             " bytes long, a trajectory has at most " +
-                             std::to_string(kMostFileBytes));
-  }
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    throw std::runtime_error(path.string() +
-                             ": cannot read the trajectory: " + std::strerror(errno));
-  }
-  std::vector<TimedPosition> positions;
-  std::string text;
-  for (std::size_t line = 1; std::getline(file, text); ++line) {
-    if (line == 1) {
-      if (const std::string kind = stand_in(text, path.string()); !kind.empty()) {
-        throw std::runtime_error(path.string() + ": is " + kind + "; expected a TUM trajectory");
-      }
+Trajectory Trajectory::read(const fs::path& file) {
+  require_text_file(file);
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error(file.string() + ": cannot be read: " + std::strerror(errno));
+  Trajectory out;
+  std::string line;
+  bool titled = false;
+  for (std::size_t number = 1; std::getline(in, line); ++number) {
+    std::string_view text = line;
+    if (number == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    while (!text.empty() && is_separator(text.front())) text.remove_prefix(1);
+    if (text.empty() || text.front() == '#') continue;
+    const auto refuse = [&](const std::string& problem) {
+      throw std::runtime_error(file.string() + ", line " + std::to_string(number) + ": " + problem);
+    };
+    const Numbers n = numbers_in(text);
+    if (n.count == 0 && out.poses_.empty() && !titled) {
+      titled = true;
+      continue;
     }
-    const std::size_t begin = text.find_first_not_of(kBlanks);
-    if (begin == std::string::npos || text[begin] == '#') continue;
-    positions.push_back(read_line(text, path, line));
+    if (n.count != 8 || !n.whole) {
+      refuse("expected 8 numbers, stamp x y z qx qy qz qw, found " +
+             (n.whole ? std::to_string(n.count) : "'" + std::string(text.substr(0, 60)) + "'"));
+    }
+    const auto& v = n.values;
+    const double stamp = v[0] > 1e17 ? v[0] * 1e-9 : v[0];  // nanoseconds since 1970
+    const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
+    if (q.norm() < 1e-3) refuse("expected a rotation qx qy qz qw, found one of no length");
+    if (!out.poses_.empty() && stamp <= out.poses_.back().stamp_s) {
+      refuse("expected stamps that ascend, found one that is not later than the line before");
+    }
+    StampedPose& pose = out.poses_.emplace_back();
+    pose.stamp_s = stamp;
+    pose.T_frame_base = Eigen::Translation3d(v[1], v[2], v[3]) * q.normalized();
   }
-  if (file.bad()) {
-    throw std::runtime_error(path.string() + ": cannot be read to its end");
+  if (out.poses_.empty()) {
+    throw std::runtime_error(file.string() +
+                             ": holds no pose; expected lines of stamp x y z qx qy qz qw");
   }
-  if (positions.empty()) {
-    throw std::runtime_error(path.string() +
-                             ": holds no pose; expected a TUM trajectory, 'stamp x "
-                             "y z qx qy qz qw' a line");
-  }
-  return Trajectory(std::move(positions));
+  return out;
 }
 
-Trajectory::Trajectory(std::vector<TimedPosition> positions) : positions_(std::move(positions)) {
-  std::stable_sort(
-      positions_.begin(), positions_.end(),
-      [](const TimedPosition& a, const TimedPosition& b) { return a.stamp < b.stamp; });
-}
-
-std::optional<Point3> Trajectory::at(double stamp, double tolerance_s) const {
-  const auto after = std::lower_bound(
-      positions_.begin(), positions_.end(), stamp,
-      [](const TimedPosition& position, double wanted) { return position.stamp < wanted; });
-  const TimedPosition* nearest = after == positions_.end() ? nullptr : &*after;
-  if (after != positions_.begin()) {
-    const TimedPosition& before = *std::prev(after);
-    if (nearest == nullptr || stamp - before.stamp < nearest->stamp - stamp) nearest = &before;
-  }
-  if (nearest == nullptr || !(std::abs(nearest->stamp - stamp) <= tolerance_s)) return std::nullopt;
-  return nearest->p;
+std::optional<Eigen::Isometry3d> Trajectory::at(double stamp_s) const {
+  const auto after = std::ranges::lower_bound(poses_, stamp_s, {}, &StampedPose::stamp_s);
+  if (after == poses_.end()) return std::nullopt;
+  if (after->stamp_s == stamp_s) return after->T_frame_base;
+  if (after == poses_.begin()) return std::nullopt;
+  const StampedPose& a = *std::prev(after);
+  const double gap = after->stamp_s - a.stamp_s;
+  if (gap > kLongestGap_s) return std::nullopt;
+  const double share = (stamp_s - a.stamp_s) / gap;
+  const Eigen::Quaterniond from(a.T_frame_base.linear()), to(after->T_frame_base.linear());
+  const Eigen::Vector3d p =
+      a.T_frame_base.translation() * (1 - share) + after->T_frame_base.translation() * share;
+  return Eigen::Isometry3d(Eigen::Translation3d(p) * from.slerp(share, to));
 }
 
 }  // namespace zonepack::packer

@@ -1,40 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <optional>
 #include <vector>
 
-#include "packer/align/umeyama.hpp"
-
 namespace zonepack::packer {
 
-struct TimedPosition {
-  double stamp = 0;  // seconds
-  Point3 p{};        // metres
+struct StampedPose {
+  double stamp_s = 0;
+  Eigen::Isometry3d T_frame_base = Eigen::Isometry3d::Identity();
 };
 
-// Positions over time, by ascending stamp.
+// A TUM trajectory: a line each pose, "stamp x y z qx qy qz qw", separated by blanks, tabs or
+// commas; lines that begin with # are comments, one line of column names is left out.
 class Trajectory {
  public:
-  // Reads a TUM trajectory: a line for each pose, "stamp x y z qx qy qz qw", seconds and metres;
-  // empty lines and those that begin with # are skipped, orientations are checked and left alone.
-  // Throws std::runtime_error that names the file and the line.
-  static Trajectory read(const std::filesystem::path& path);
+  // Throws std::runtime_error with file and line for anything else: numbers that are not finite,
+  // a quaternion of no length, stamps that do not ascend, more than 256 MiB.
+  static Trajectory read(const std::filesystem::path& file);
 
-  explicit Trajectory(std::vector<TimedPosition> positions);
+  const std::vector<StampedPose>& poses() const noexcept { return poses_; }
 
-  const std::vector<TimedPosition>& positions() const noexcept { return positions_; }
-
-  // The position whose stamp is nearest, if it is at most `tolerance_s` away.
-  std::optional<Point3> at(double stamp, double tolerance_s) const;
+  // The pose at a time, linear between the two around it; none before the first, behind the last,
+  // and where they are more than a second apart.
+  std::optional<Eigen::Isometry3d> at(double stamp_s) const;
 
  private:
-  std::vector<TimedPosition> positions_;
+  std::vector<StampedPose> poses_;  // ascending stamps
 };
-
-// Stamps of the same keyframe may differ by so much: writers of trajectories print microseconds to
-// hundredths of a second.
-inline constexpr double kStampTolerance_s = 0.01;
 
 }  // namespace zonepack::packer

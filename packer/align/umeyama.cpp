@@ -94,7 +94,7 @@ std::array<double, 9> rotation_of(const std::array<double, 4>& q) {
 
 }  // namespace
 
-Point3 Similarity::operator()(const Point3& p) const noexcept {
+Point3 PointTransform::operator()(const Point3& p) const noexcept {
   Point3 out;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t row = 3 * i;
@@ -104,7 +104,7 @@ Point3 Similarity::operator()(const Point3& p) const noexcept {
   return out;
 }
 
-Transform Similarity::operator()(const Transform& T) const noexcept {
+Transform PointTransform::operator()(const Transform& T) const noexcept {
   Transform out;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
@@ -120,7 +120,7 @@ Transform Similarity::operator()(const Transform& T) const noexcept {
   return out;
 }
 
-Alignment align(std::span<const Point3> from, std::span<const Point3> to, AlignModel model) {
+PointFit fit_points(std::span<const Point3> from, std::span<const Point3> to, FitModel model) {
   const std::size_t pairs = std::min(from.size(), to.size());
   if (pairs < kLeastPairs) {
     throw std::runtime_error("needs " + std::to_string(kLeastPairs) +
@@ -162,15 +162,15 @@ Alignment align(std::span<const Point3> from, std::span<const Point3> to, AlignM
   }
   for (double& value : q) value /= std::sqrt(length);
 
-  Alignment result;
-  Similarity& T = result.T_to_from;
+  PointFit result;
+  PointTransform& T = result.T_to_from;
   T.rotation = rotation_of(q);
   double along = 0;  // sum of to . R from about the means
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) along += T.rotation[3 * j + i] * s[i][j];
   }
   result.scale_found = along / spread_from;
-  T.scale = model == AlignModel::kSimilarity ? result.scale_found : 1;
+  T.scale = model == FitModel::kSimilarity ? result.scale_found : 1;
   const Point3 turned = T(mean_from);
   for (std::size_t i = 0; i < 3; ++i) T.translation[i] = mean_to[i] - turned[i];
 

@@ -15,7 +15,7 @@ namespace zonepack::packer {
 using Point3 = std::array<double, 3>;  // metres
 
 // p_to = scale * rotation * p_from + translation.
-struct Similarity {
+struct PointTransform {
   std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major
   Point3 translation{};
   double scale = 1;
@@ -25,10 +25,10 @@ struct Similarity {
   Transform operator()(const Transform& T_from_base) const noexcept;
 };
 
-enum class AlignModel { kRigid, kSimilarity };
+enum class FitModel { kRigid, kSimilarity };
 
-struct Alignment {
-  Similarity T_to_from;
+struct PointFit {
+  PointTransform T_to_from;
   double scale_found = 1;           // of the similarity, also where a rigid transform is returned
   double rms_m = 0;                 // of the residuals, in the frame `to`
   double largest_m = 0;             // the largest residual
@@ -45,6 +45,6 @@ struct Alignment {
 // Throws std::runtime_error, a text that continues "the alignment ...", when there are fewer than
 // three pairs, a coordinate is not finite, or the points of one side lie on one line, about which
 // the rotation would be free.
-Alignment align(std::span<const Point3> from, std::span<const Point3> to, AlignModel model);
+PointFit fit_points(std::span<const Point3> from, std::span<const Point3> to, FitModel model);
 
 }  // namespace zonepack::packer

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "packer/sources/damage.hpp"
+#include "packer/record/damage.hpp"
 
 namespace zonepack::packer {
 

@@ -11,7 +11,6 @@
 #include <thread>
 
 #include "packer/build/damages.hpp"
-#include "packer/build/detector_text.hpp"
 #include "packer/build/manifest_writer.hpp"
 #include "packer/build/map_folder.hpp"
 #include "packer/build/payload_set.hpp"
@@ -19,7 +18,7 @@
 #include "packer/build/provenance.hpp"
 #include "packer/build/repeated_features.hpp"
 #include "packer/encode/packable.hpp"
-#include "packer/sources/rtabmap_database.hpp"
+#include "packer/sources/open_source.hpp"
 #include "platform/base/file_kind.hpp"
 #include "platform/base/require.hpp"
 
@@ -29,7 +28,7 @@ namespace {
 class MapBuilder {
  public:
   MapBuilder(const BuildOptions& options, Progress& progress)
-      : options_(options), progress_(progress), database_(options.database) {
+      : options_(options), progress_(progress), source_(open_source(options.source)) {
     zones_ = load_zone_file(options.zones.string(), options.snap_m);
   }
 
@@ -47,7 +46,7 @@ class MapBuilder {
   void outline();
   void place();
   void pack(MapFolder& folder, const ZonePlan& plan, const std::vector<std::uint32_t>& zone_of);
-  void pack_zone(RtabmapDatabase& database, MapFolder& folder, std::size_t zone);
+  void pack_zone(MapSource& source, MapFolder& folder, std::size_t zone);
   void split(MapFolder& folder);
   void name_layers();
   void finish(MapFolder& folder);
@@ -57,7 +56,7 @@ class MapBuilder {
 
   const BuildOptions& options_;
   Progress& progress_;
-  RtabmapDatabase database_;
+  std::unique_ptr<MapSource> source_;
   ZoneFile zones_;
   BuildSummary summary_;
 
@@ -76,25 +75,26 @@ class MapBuilder {
 };
 
 void MapBuilder::outline() {
-  const MapOutline& outline = database_.outline();
+  const MapOutline& outline = source_->outline();
   summary_.schema_version = outline.schema_version;
   summary_.deleted = outline.deleted_nodes;
   summary_.unlinked_by_session = outline.unlinked_by_session;
   summary_.warnings = outline.warnings;
+  summary_.notes = outline.notes;
   for (const Finding& finding : zones_.findings.warnings) {
     summary_.warnings.push_back(to_string(finding, options_.zones.string()));
   }
   const SourceBytes source = source_bytes(outline);
   summary_.feature_row_bytes = source.feature_rows;
   summary_.source_bytes = source.bytes;
-  require_signatures(outline, options_.database.string());
+  require_signatures(outline, options_.source.name());
   for (const NodeOutline& node : outline.nodes) ++summary_.sessions[node.map_id];
-  require_known(options_.sessions, options_.layers, summary_.sessions, options_.database.string());
+  require_known(options_.sessions, options_.layers, summary_.sessions, options_.source.name());
   damages_ = outline.damages;
   for (const Damage& damage : damages_) skipped_.insert(damage.signature);
   if (options_.unlinked == UnlinkedPolicy::kError && outline.unlinked() > 0) {
     throw std::runtime_error(
-        options_.database.string() + ": " + std::to_string(outline.unlinked()) +
+        options_.source.name() + ": " + std::to_string(outline.unlinked()) +
         (outline.unlinked() == 1 ? " signature has" : " signatures have") +
         " no optimised pose; open the database with RTAB-Map and close it cleanly, "
         "or pack with --unlinked odometry or drop");
@@ -102,7 +102,7 @@ void MapBuilder::outline() {
 }
 
 void MapBuilder::place() {
-  const Placing placing = place_signatures(database_.outline(), options_.unlinked);
+  const Placing placing = place_signatures(source_->outline(), options_.unlinked);
   summary_.unconnected_by_session = placing.unconnected_by_session;
   summary_.unlinked_dropped = placing.dropped;
   for (const auto& [node, T] : placing.placed) {
@@ -115,13 +115,13 @@ void MapBuilder::place() {
     sessions_.push_back(node->map_id);
   }
   if (places_.empty() && summary_.not_chosen > 0) {
-    throw std::runtime_error(options_.database.string() +
+    throw std::runtime_error(options_.source.name() +
                              ": no signature is left; --layers and --drop-session leave out all " +
                              std::to_string(summary_.not_chosen));
   }
   for (const auto& [session, count] : summary_.unconnected_by_session) {
     summary_.warnings.push_back(
-        options_.database.string() + ": session " + std::to_string(session) + " with its " +
+        options_.source.name() + ": session " + std::to_string(session) + " with its " +
         std::to_string(count) + (count == 1 ? " signature" : " signatures") +
         " is connected to no other, so nothing says where it is; it is left out. Keep it with "
         "--unlinked odometry-all");
@@ -163,8 +163,8 @@ void MapBuilder::pack(MapFolder& folder, const ZonePlan& plan,
   std::exception_ptr failure;
   const auto work = [&] {
     try {
-      RtabmapDatabase database = database_.reopen();
-      for (std::size_t i; (i = next++) < order.size();) pack_zone(database, folder, order[i]);
+      const std::unique_ptr<MapSource> source = source_->reopen();
+      for (std::size_t i; (i = next++) < order.size();) pack_zone(*source, folder, order[i]);
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!failure) failure = std::current_exception();
@@ -176,13 +176,13 @@ void MapBuilder::pack(MapFolder& folder, const ZonePlan& plan,
   work();
   threads.clear();
   if (failure) std::rethrow_exception(failure);
-  database_.require_unchanged();
-  refuse_damaged(damages_, options_.damaged, options_.database.string());
+  source_->require_unchanged();
+  refuse_damaged(damages_, options_.damaged, options_.source.name());
   progress_.finish(std::to_string(total) + " signatures of " + std::to_string(order.size()) +
                    " zones on " + std::to_string(jobs) + (jobs == 1 ? " core" : " cores"));
 }
 
-void MapBuilder::pack_zone(RtabmapDatabase& database, MapFolder& folder, std::size_t zone) {
+void MapBuilder::pack_zone(MapSource& source, MapFolder& folder, std::size_t zone) {
   PackWriter writer(folder.path(), plan_.zones[zone].name);
   SignatureRecord record;
   const PayloadSet wanted = payload_set(options_.payload);
@@ -190,7 +190,7 @@ void MapBuilder::pack_zone(RtabmapDatabase& database, MapFolder& folder, std::si
     const SignaturePlace& place = places_[member];
     progress_.advance();
     try {
-      database.read(place.id, wanted, record);
+      source.read(place.id, wanted, record);
     } catch (const DamagedSignature& damaged) {
       const std::lock_guard lock(mutex_);
       if (skipped_.insert(place.id).second) damages_.push_back(damaged.damage());
@@ -277,8 +277,8 @@ std::vector<fb::ZoneEdge> MapBuilder::edges() const {
 
 // Every version of a map begins with the same first signature, so it names the lineage.
 Digest16 MapBuilder::lineage() const {
-  const NodeOutline& first = database_.outline().nodes.front();
-  std::string text = "rtabmap " + std::to_string(first.id) + " ";
+  const NodeOutline& first = source_->outline().nodes.front();
+  std::string text = source_->outline().kind + " " + std::to_string(first.id) + " ";
   text.append(reinterpret_cast<const char*>(&first.stamp), sizeof first.stamp);
   return blake2b_16(std::as_bytes(std::span(text)));
 }
@@ -299,10 +299,10 @@ void MapBuilder::finish(MapFolder& folder) {
   // In a whole database a robot that stands still in a simulation may see the same image twice.
   if (const auto repeated = repeated_.text(); repeated && !damages_.empty()) {
     summary_.warnings.push_back(
-        options_.database.string() + ": " + *repeated +
+        options_.source.name() + ": " + *repeated +
         ": in a damaged database one page may stand in the place of another, and then at most one "
         "of them is right; check the file with: sqlite3 " +
-        shell_quoted(options_.database.string()) + " 'PRAGMA integrity_check'");
+        shell_quoted(options_.source.name()) + " 'PRAGMA integrity_check'");
   }
   if (!options_.layers.empty()) name_layers();
   ManifestContent content;
@@ -318,15 +318,15 @@ void MapBuilder::finish(MapFolder& folder) {
   content.edges = edges();
   content.lineage = lineage();
   content.payload = options_.payload;
-  content.source_kind = "rtabmap";
+  content.source_kind = source_->outline().kind;
   content.source_version = summary_.schema_version;
   content.options = packing_text({.orphans = options_.orphans,
                                   .unlinked = options_.unlinked,
                                   .max_zone_bytes = options_.max_zone_bytes,
                                   .snap_m = options_.snap_m,
                                   .sessions = options_.sessions});
-  content.detector = detector_text(database_.outline());
-  content.source_feature_count = database_.outline().feature_count;
+  content.detector = source_->outline().detector;
+  content.source_feature_count = source_->outline().feature_count;
   content.source_bytes = summary_.source_bytes;
   const Bytes manifest = manifest_bytes(content);
   summary_.unchanged = folder.commit(manifest);

@@ -13,7 +13,7 @@
 #include "packer/build/progress.hpp"
 #include "packer/build/sessions.hpp"
 #include "packer/encode/pack_writer.hpp"
-#include "packer/sources/damage.hpp"
+#include "packer/record/source_kind.hpp"
 #include "packer/zones/orphans.hpp"
 #include "packer/zones/partition.hpp"
 #include "packer/zones/split.hpp"
@@ -24,7 +24,7 @@
 namespace zonepack::packer {
 
 struct BuildOptions {
-  std::filesystem::path database;
+  SourceOptions source;
   std::filesystem::path zones;
   std::filesystem::path out;
   PayloadMask payload = kEveryPayload;
@@ -55,6 +55,7 @@ struct BuildSummary {
   std::vector<Damage> damages;  // of the signatures that were skipped
   std::vector<SplitZone> split;
   std::vector<std::string> warnings;  // complete sentences
+  std::vector<std::string> notes;     // how the source was read
   std::vector<std::string> zone_names;
   std::vector<PackSummary> packs;   // by zone
   ByteCount charged_bytes = 0;      // all zones, default payload: slots x slot size

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "packer/record/record.hpp"
-#include "runtime/pack_format/chunk_view.hpp"
+#include "runtime/pack_format/file/pack_file.hpp"
 
 namespace zonepack::packer {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "packer/sources/map_outline.hpp"
+#include "packer/record/map_outline.hpp"
 
 // Where the signatures of a source stand in the map.
 namespace zonepack::packer {

@@ -12,7 +12,6 @@
 namespace zonepack::packer {
 namespace {
 
-constexpr std::uint64_t kFeatureRowBytes = 72;  // size of a row of the Feature table
 constexpr std::array<std::string_view, 3> kOrphans = {"nearest", "drop", "error"};
 constexpr std::array<std::string_view, 4> kUnlinked = {"odometry", "drop", "error", "odometry-all"};
 
@@ -48,7 +47,7 @@ void take(std::string_view word, const std::array<std::string_view, N>& words, P
 SourceBytes source_bytes(const MapOutline& outline) noexcept {
   SourceBytes source;
   source.features = outline.feature_count;
-  source.feature_rows = outline.feature_count * kFeatureRowBytes;
+  source.feature_rows = outline.feature_bytes;
   source.bytes = source.feature_rows + outline.scan_bytes + outline.grid_bytes;
   return source;
 }

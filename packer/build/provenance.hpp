@@ -8,7 +8,7 @@
 #include "packer/build/sessions.hpp"
 #include "packer/zones/partition.hpp"
 #include "platform/base/byte_count.hpp"
-#include "runtime/pack_format/manifest_generated.h"
+#include "runtime/pack_format/file/manifest_file.hpp"
 
 // What a manifest says of how its map was packed.
 namespace zonepack::packer {
@@ -16,8 +16,8 @@ namespace zonepack::packer {
 // What the source spends on its signatures.
 struct SourceBytes {
   std::uint64_t features = 0;
-  ByteCount feature_rows = 0;  // 72 bytes each
-  ByteCount bytes = 0;         // these, and the zlib blobs of scans and grids
+  ByteCount feature_rows = 0;
+  ByteCount bytes = 0;  // these, and the zlib blobs of scans and grids
 };
 SourceBytes source_bytes(const MapOutline& outline) noexcept;
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "packer/commands/session_options.hpp"
+#include "packer/commands/source_options.hpp"
 #include "packer/console/command_line.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/words.hpp"
@@ -146,10 +147,11 @@ void print(const UpdateSummary& s, const UpdateOptions& options, std::ostream& o
 // What options say together; CLI11 checks each by itself.
 void require_sense(const UpdateOptions& options) {
   const bool zones = !options.replace.empty() || options.add;
-  if (options.database.empty()) {
+  if (options.source.path.empty()) {
     if (zones) throw CLI::RequiredError("--db (for --replace and --add)");
     if (!options.zones.empty()) throw CLI::RequiredError("--db (for --zones)");
-    if (!options.trajectory.empty()) throw CLI::RequiredError("--db (for --align)");
+    if (!options.source.placement.trajectory.empty())
+      throw CLI::RequiredError("--db (for --align)");
     if (!options.sessions.layers.empty()) throw CLI::RequiredError("--db (for --layers)");
     if (options.sessions.dropped.empty() && options.layers.empty()) {
       throw CLI::RequiredError("one of --db, --drop-session and --layer");
@@ -167,11 +169,8 @@ void add_update_command(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "update", "Change some zones of a map; the packs of all others stay as they are");
   command->add_option("MAP", options.map, "folder of the map")->required()->type_name("DIR");
-  command
-      ->add_option("--db", options.database,
-                   "RTAB-Map database with the new sessions: the one of the map grown on, or "
-                   "another; only read")
-      ->type_name("DB");
+  add_source_options(*command, options.source,
+                     "the new sessions: the source of the map grown on, or another");
   command
       ->add_option("--zones", options.zones,
                    "zone polygons and portals to take from; default: those of the map")
@@ -186,11 +185,6 @@ void add_update_command(CLI::App& app, int& exit_code) {
                  "add the zones of --zones that the map does not have or, when there are none, "
                  "signatures that the map does not have to its own zones")
       ->excludes(replace);
-  command
-      ->add_option("--align", options.trajectory,
-                   "TUM trajectory of the database's signatures in the map's frame; default: it "
-                   "is in that frame")
-      ->type_name("TRAJECTORY");
   add_session_options(*command, options.layers, options.sessions);
   CLI::Option* const orphans = add_choice_option<OrphanPolicy>(
       *command, "--orphans", arguments->orphans,

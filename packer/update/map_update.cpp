@@ -7,18 +7,18 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <stdexcept>
 #include <thread>
 
-#include "packer/build/detector_text.hpp"
 #include "packer/build/map_folder.hpp"
 #include "packer/build/payload_set.hpp"
 #include "packer/build/provenance.hpp"
 #include "packer/decode/zone_records.hpp"
 #include "packer/encode/packable.hpp"
-#include "packer/sources/rtabmap_database.hpp"
+#include "packer/sources/open_source.hpp"
 #include "packer/update/held_plan.hpp"
 #include "packer/update/newcomers.hpp"
 #include "packer/zones/redrawn.hpp"
@@ -58,7 +58,7 @@ class MapUpdate {
     require_writable_format();
     layers_ = merged_layers(layers_of(manifest_), options_.layers);
     draw();
-    if (!options_.database.empty()) open_database();
+    if (!options_.source.path.empty()) open_database();
     require_sessions();
     choose();
     MapFolder folder(options_.map);
@@ -82,6 +82,7 @@ class MapUpdate {
   void draw();
   std::set<std::string> replaced_zones() const;
   void open_database();
+  void require_kind() const;
   void require_sessions() const;
   void warn_of_other_frame();
   void choose();
@@ -91,8 +92,8 @@ class MapUpdate {
   void refuse_empty() const;
   bool stays(const Newcomer& newcomer) const;
   void pack(MapFolder& folder);
-  void add_links_to_newcomers(RtabmapDatabase& database, SignatureRecord& record) const;
-  void pack_zone(RtabmapDatabase* database, MapFolder& folder, std::uint32_t zone);
+  void add_links_to_newcomers(MapSource& database, SignatureRecord& record) const;
+  void pack_zone(MapSource* database, MapFolder& folder, std::uint32_t zone);
   void name_layers();
   void compare();
   std::vector<fb::ZoneEdge> edges();
@@ -114,7 +115,7 @@ class MapUpdate {
   std::set<std::string> replaced_;
   std::vector<Content> contents_;             // by zone of the plan
   std::vector<std::uint32_t> place_of_held_;  // by zone of the map: of the plan, if it is kept
-  std::optional<RtabmapDatabase> database_;
+  std::unique_ptr<MapSource> database_;
   std::optional<Newcomers> newcomers_;
   std::set<std::int32_t> taken_;  // ids of newcomers that are packed
 
@@ -182,8 +183,19 @@ void MapUpdate::draw() {
   }
 }
 
+// Another kind has other features, poses and payloads, and a manifest names one kind.
+void MapUpdate::require_kind() const {
+  const std::string held = flatbuffers::GetString(manifest_.provenance()->source_kind());
+  const std::string& kind = database_->outline().kind;
+  if (kind == held) return;
+  throw std::runtime_error(options_.source.name() + ": is a source of kind " + kind +
+                           ", and the map " + options_.map.string() + " was packed from kind " +
+                           held + "; update it from one of that kind, or build another map");
+}
+
 void MapUpdate::open_database() {
-  database_.emplace(options_.database);
+  database_ = open_source(options_.source);
+  require_kind();
   newcomers_.emplace(*database_, held_, plan_, options_, layers_,
                      options_.unlinked.value_or(packed_.unlinked));
   for (const std::string& warning : database_->outline().warnings) {
@@ -196,16 +208,16 @@ void MapUpdate::open_database() {
   }
   damages_ = database_->outline().damages;
   for (const Damage& damage : damages_) skipped_.insert(newcomers_->numbers().id(damage.signature));
-  refuse_damaged(damages_, options_.damaged, options_.database.string());
+  refuse_damaged(damages_, options_.damaged, options_.source.name());
   summary_.signatures_shared = newcomers_->numbers().shared();
   summary_.not_chosen = newcomers_->not_chosen();
   summary_.unlinked_dropped = newcomers_->dropped();
   warn_of_other_frame();
-  const std::string detector = detector_text(database_->outline());
+  const std::string detector = database_->outline().detector;
   const std::string before = flatbuffers::GetString(manifest_.provenance()->detector());
   if (detector != before && !detector.empty() && !before.empty()) {
     summary_.warnings.push_back(
-        options_.database.string() + ": its features were found with other settings (" + detector +
+        options_.source.name() + ": its features were found with other settings (" + detector +
         ") than the map's (" + before +
         "); a localizer treats images by those of the map and may find little in the new zones");
   }
@@ -234,7 +246,7 @@ void MapUpdate::warn_of_other_frame() {
   const double rms = count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
   if (rms <= kApart_m) return;
   summary_.warnings.push_back(
-      options_.database.string() + ": the " + std::to_string(count) +
+      options_.source.name() + ": the " + std::to_string(count) +
       " signatures that the map holds too stand " + number_text(rms) +
       " m (rms) from where the map has them; is it in another frame? Give --align a trajectory of "
       "its signatures in the map's frame, or build the whole map again");
@@ -292,7 +304,7 @@ void MapUpdate::choose_newcomers() {
 void MapUpdate::refuse_orphans(const std::vector<const Newcomer*>& orphans) const {
   const Newcomer& first = *orphans.front();
   throw std::runtime_error(
-      options_.database.string() + ": " + std::to_string(orphans.size()) +
+      options_.source.name() + ": " + std::to_string(orphans.size()) +
       (orphans.size() == 1 ? " signature stands" : " signatures stand") +
       " in no zone, nearest to a zone of this update, such as " + std::to_string(first.node->id) +
       " at " + point_text({first.T_map_base[3], first.T_map_base[7]}) +
@@ -307,7 +319,7 @@ void MapUpdate::refuse_empty() const {
     if (!replaced || !contents_[zone].newcomers.empty()) continue;
     const std::uint32_t before = index_of(held_plan_, name);
     if (before != kNone && manifest_.zones()->Get(before)->signatures() == 0) continue;
-    throw std::runtime_error(options_.database.string() + ": no signature stands in zone " + name +
+    throw std::runtime_error(options_.source.name() + ": no signature stands in zone " + name +
                              ", which would lose all it has; is the database in the map's frame? "
                              "If not, give --align a trajectory of its signatures there");
   }
@@ -327,7 +339,7 @@ void MapUpdate::say_left_out() {
   }
   if (shown > kShown) zones += " and " + std::to_string(shown - kShown) + " zones more";
   summary_.warnings.push_back(
-      options_.database.string() + ": " + std::to_string(count) +
+      options_.source.name() + ": " + std::to_string(count) +
       (count == 1 ? " signature that the map lacks stands"
                   : " signatures that the map lacks stand") +
       " in zones that stay as they are (" + zones + "); left out. Take them with --replace ZONE" +
@@ -363,10 +375,9 @@ void MapUpdate::pack(MapFolder& folder) {
   std::exception_ptr failure;
   const auto work = [&] {
     try {
-      std::optional<RtabmapDatabase> database;
-      if (database_) database.emplace(database_->reopen());
+      const std::unique_ptr<MapSource> database = database_ ? database_->reopen() : nullptr;
       for (std::size_t i; (i = next++) < order.size();) {
-        pack_zone(database ? &*database : nullptr, folder, order[i]);
+        pack_zone(database.get(), folder, order[i]);
         progress_.advance();
       }
     } catch (...) {
@@ -381,12 +392,12 @@ void MapUpdate::pack(MapFolder& folder) {
   threads.clear();
   if (failure) std::rethrow_exception(failure);
   if (database_) database_->require_unchanged();
-  refuse_damaged(damages_, options_.damaged, options_.database.string());
+  refuse_damaged(damages_, options_.damaged, options_.source.name());
   progress_.finish(std::to_string(order.size()) + (order.size() == 1 ? " zone" : " zones"));
 }
 
 // A signature that the map keeps may have been linked to new ones since.
-void MapUpdate::add_links_to_newcomers(RtabmapDatabase& database, SignatureRecord& record) const {
+void MapUpdate::add_links_to_newcomers(MapSource& database, SignatureRecord& record) const {
   const NodeOutline* const node = database.outline().find(record.id);
   if (node == nullptr || node->damaged || !held_.same(record.id, node->stamp)) return;
   constexpr PayloadSet kNothing{false, false, false, false, false, false};
@@ -403,7 +414,7 @@ void MapUpdate::add_links_to_newcomers(RtabmapDatabase& database, SignatureRecor
   });
 }
 
-void MapUpdate::pack_zone(RtabmapDatabase* database, MapFolder& folder, std::uint32_t zone) {
+void MapUpdate::pack_zone(MapSource* database, MapFolder& folder, std::uint32_t zone) {
   const Content& content = contents_[zone];
   PackWriter writer(folder.path(), plan_.zones[zone].name);
   std::optional<ZoneRecords> records;

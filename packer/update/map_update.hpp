@@ -12,6 +12,7 @@
 #include "packer/build/placing.hpp"
 #include "packer/build/progress.hpp"
 #include "packer/build/sessions.hpp"
+#include "packer/record/source_kind.hpp"
 #include "packer/zones/orphans.hpp"
 #include "packer/zones/partition.hpp"
 #include "platform/base/byte_count.hpp"
@@ -21,9 +22,8 @@ namespace zonepack::packer {
 
 struct UpdateOptions {
   std::filesystem::path map;
-  std::filesystem::path database;    // empty: none
-  std::filesystem::path zones;       // empty: the zones of the map
-  std::filesystem::path trajectory;  // empty: the database is in the map's frame
+  SourceOptions source;         // without a path: none
+  std::filesystem::path zones;  // empty: the zones of the map
   // Zones whose signatures are those of the database that stand in them; a name of a zone that was
   // split stands for all of its parts.
   std::vector<std::string> replace;

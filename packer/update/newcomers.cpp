@@ -14,6 +14,7 @@
 namespace zonepack::packer {
 namespace {
 
+constexpr const char* kRtabmap = "rtabmap";
 constexpr double kScaleOff = 0.02;  // a metric map fits with a scale nearer to 1
 
 std::string seconds_text(double stamp) {
@@ -33,16 +34,17 @@ void refuse_unlinked(const MapOutline& outline, const std::string& database) {
 
 }  // namespace
 
-Newcomers::Newcomers(const RtabmapDatabase& database, const HeldSignatures& held,
-                     const ZonePlan& plan, const UpdateOptions& options,
-                     const std::vector<NamedLayer>& layers, UnlinkedPolicy unlinked)
+Newcomers::Newcomers(const MapSource& database, const HeldSignatures& held, const ZonePlan& plan,
+                     const UpdateOptions& options, const std::vector<NamedLayer>& layers,
+                     UnlinkedPolicy unlinked)
     : numbers_(held, database.outline()) {
   const MapOutline& outline = database.outline();
-  const std::string name = options.database.string();
+  const std::string name = options.source.name();
   require_signatures(outline, name);
   if (unlinked == UnlinkedPolicy::kError) refuse_unlinked(outline, name);
-  if (!options.trajectory.empty()) {
-    align_with(options.trajectory, outline, name);
+  // Maps of keyframes come aligned (Placement).
+  if (!options.source.placement.trajectory.empty() && outline.kind == kRtabmap) {
+    align_with(options.source.placement.trajectory, outline, name);
     // Odometry has a frame of its own, which the trajectory says nothing about.
     unlinked = UnlinkedPolicy::kDrop;
   }
@@ -80,22 +82,22 @@ void Newcomers::align_with(const std::filesystem::path& path, const MapOutline& 
     if (!node.pose) continue;
     first = std::min(first, node.stamp);
     last = std::max(last, node.stamp);
-    const std::optional<Point3> there = trajectory.at(node.stamp, kStampTolerance_s);
+    const auto there = trajectory.at(node.stamp);
     if (!there) continue;
     const Transform& T = *node.pose;
     from.push_back({T[3], T[7], T[11]});
-    to.push_back(*there);
+    to.push_back({there->translation().x(), there->translation().y(), there->translation().z()});
   }
   try {
     // RTAB-Map's maps are metric, and points of a signature are stored relative to its base.
-    alignment_ = align(from, to, AlignModel::kRigid);
+    alignment_ = fit_points(from, to, FitModel::kRigid);
   } catch (const std::runtime_error& error) {
-    const auto& positions = trajectory.positions();
+    const auto& poses = trajectory.poses();
     throw std::runtime_error(
         path.string() + ": the alignment " + error.what() + ". " + std::to_string(from.size()) +
-        " of its " + std::to_string(positions.size()) +
-        " poses have the stamp of a signature with an optimised pose (to 0.01 s): its stamps are " +
-        seconds_text(positions.front().stamp) + " to " + seconds_text(positions.back().stamp) +
+        (from.size() == 1 ? " signature" : " signatures") +
+        " with an optimised pose lie between two of its stamps: these are " +
+        seconds_text(poses.front().stamp_s) + " to " + seconds_text(poses.back().stamp_s) +
         ", those of " + database + " " +
         (first <= last ? seconds_text(first) + " to " + seconds_text(last) : std::string("none")));
   }

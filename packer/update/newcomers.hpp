@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "packer/align/umeyama.hpp"
-#include "packer/sources/rtabmap_database.hpp"
+#include "packer/record/map_source.hpp"
 #include "packer/update/map_update.hpp"
 #include "packer/update/renumbering.hpp"
 #include "packer/zones/zone_plan.hpp"
@@ -29,13 +29,13 @@ class Newcomers {
  public:
   // Places the database's signatures among the zones of `plan`. Throws std::runtime_error when it
   // has none, when the policy refuses some, or when the trajectory does not align it.
-  Newcomers(const RtabmapDatabase& database, const HeldSignatures& held, const ZonePlan& plan,
+  Newcomers(const MapSource& database, const HeldSignatures& held, const ZonePlan& plan,
             const UpdateOptions& options, const std::vector<NamedLayer>& layers,
             UnlinkedPolicy unlinked);
 
   const std::vector<Newcomer>& all() const noexcept { return all_; }  // by id in the map
   const Renumbering& numbers() const noexcept { return numbers_; }
-  const std::optional<Alignment>& alignment() const noexcept { return alignment_; }
+  const std::optional<PointFit>& alignment() const noexcept { return alignment_; }
   std::size_t not_chosen() const noexcept { return not_chosen_; }
   std::size_t dropped() const noexcept { return dropped_; }
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
@@ -46,7 +46,7 @@ class Newcomers {
   void place_in(const ZonePlan& plan);
 
   Renumbering numbers_;
-  std::optional<Alignment> alignment_;
+  std::optional<PointFit> alignment_;
   std::vector<Newcomer> all_;
   std::size_t not_chosen_ = 0, dropped_ = 0;
   std::vector<std::string> warnings_;

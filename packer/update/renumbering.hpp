@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <map>
 
+#include "packer/record/map_outline.hpp"
 #include "packer/record/record.hpp"
-#include "packer/sources/map_outline.hpp"
 #include "packer/update/held_signatures.hpp"
 
 namespace zonepack::packer {

@@ -22,7 +22,7 @@ std::vector<Point3> turned(double scale) {
 }
 
 TEST(Umeyama, FindsATurnAndAShift) {
-  const Alignment found = align(kBent, turned(1), AlignModel::kRigid);
+  const PointFit found = fit_points(kBent, turned(1), FitModel::kRigid);
   EXPECT_NEAR(found.rms_m, 0, 1e-12);
   EXPECT_NEAR(found.scale_found, 1, 1e-12);
   const Point3 p = found.T_to_from(Point3{2, 5, 7});  // 10 - 5, 20 + 2, 1 + 7
@@ -32,10 +32,10 @@ TEST(Umeyama, FindsATurnAndAShift) {
 }
 
 TEST(Umeyama, FindsAScaleAndSaysItWhereItMayNotUseIt) {
-  const Alignment scaled = align(kBent, turned(2.5), AlignModel::kSimilarity);
+  const PointFit scaled = fit_points(kBent, turned(2.5), FitModel::kSimilarity);
   EXPECT_NEAR(scaled.T_to_from.scale, 2.5, 1e-12);
   EXPECT_NEAR(scaled.largest_m, 0, 1e-11);
-  const Alignment rigid = align(kBent, turned(2.5), AlignModel::kRigid);
+  const PointFit rigid = fit_points(kBent, turned(2.5), FitModel::kRigid);
   EXPECT_EQ(rigid.T_to_from.scale, 1);
   EXPECT_NEAR(rigid.scale_found, 2.5, 1e-12);
   EXPECT_GT(rigid.rms_m, 1);
@@ -45,7 +45,7 @@ TEST(Umeyama, FindsAScaleAndSaysItWhereItMayNotUseIt) {
 TEST(Umeyama, ShowsTheResidualOfAWrongPair) {
   std::vector<Point3> to = turned(1);
   to[3][2] += 0.4;
-  const Alignment found = align(kBent, to, AlignModel::kRigid);
+  const PointFit found = fit_points(kBent, to, FitModel::kRigid);
   ASSERT_EQ(found.residuals_m.size(), 4u);
   EXPECT_GT(found.largest_m, 0.05);
   EXPECT_LT(found.largest_m, 0.4);
@@ -55,7 +55,7 @@ TEST(Umeyama, ShowsTheResidualOfAWrongPair) {
 TEST(Umeyama, NeverMirrors) {
   std::vector<Point3> mirrored = kBent;
   for (Point3& p : mirrored) p[0] = -p[0];
-  const auto& R = align(kBent, mirrored, AlignModel::kRigid).T_to_from.rotation;
+  const auto& R = fit_points(kBent, mirrored, FitModel::kRigid).T_to_from.rotation;
   const double determinant = R[0] * (R[4] * R[8] - R[5] * R[7]) -
                              R[1] * (R[3] * R[8] - R[5] * R[6]) +
                              R[2] * (R[3] * R[7] - R[4] * R[6]);
@@ -64,7 +64,7 @@ TEST(Umeyama, NeverMirrors) {
 
 // The base looks along +x; after the quarter turn it looks along +y.
 TEST(Umeyama, TurnsPosesAndDoesNotScaleTheirRotation) {
-  const Alignment found = align(kBent, turned(2), AlignModel::kSimilarity);
+  const PointFit found = fit_points(kBent, turned(2), FitModel::kSimilarity);
   const Transform T = found.T_to_from(Transform{1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, 0});
   EXPECT_NEAR(T[0], 0, 1e-6);
   EXPECT_NEAR(T[4], 1, 1e-6);
@@ -74,13 +74,13 @@ TEST(Umeyama, TurnsPosesAndDoesNotScaleTheirRotation) {
 
 TEST(Umeyama, RefusesWhatDeterminesNothing) {
   const std::vector<Point3> line = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {5, 0, 0}};
-  EXPECT_THROW(align(line, turned(1), AlignModel::kRigid), std::runtime_error);
-  EXPECT_THROW(align(kBent, line, AlignModel::kRigid), std::runtime_error);
+  EXPECT_THROW(fit_points(line, turned(1), FitModel::kRigid), std::runtime_error);
+  EXPECT_THROW(fit_points(kBent, line, FitModel::kRigid), std::runtime_error);
   const std::vector<Point3> two(kBent.begin(), kBent.begin() + 2);
-  EXPECT_THROW(align(two, two, AlignModel::kRigid), std::runtime_error);
+  EXPECT_THROW(fit_points(two, two, FitModel::kRigid), std::runtime_error);
   std::vector<Point3> bad = kBent;
   bad[1][1] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(align(kBent, bad, AlignModel::kRigid), std::runtime_error);
+  EXPECT_THROW(fit_points(kBent, bad, FitModel::kRigid), std::runtime_error);
 }
 
 }  // namespace
