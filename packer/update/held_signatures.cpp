@@ -14,6 +14,7 @@ HeldSignatures::HeldSignatures(const MapReader& map) {
       held.zone = zone;
       held.session = record.map_id;
       held.stamp = record.stamp;
+      held.odometry_pose = record.odometry_pose;
       held.links.clear();
       for (const Link& link : record.links) held.links.push_back(link.to);
       ++sessions_[record.map_id];
@@ -24,11 +25,6 @@ HeldSignatures::HeldSignatures(const MapReader& map) {
 const HeldSignatures::Signature* HeldSignatures::find(std::int32_t id) const noexcept {
   const auto found = by_id_.find(id);
   return found == by_id_.end() ? nullptr : &found->second;
-}
-
-bool HeldSignatures::same(std::int32_t id, double stamp) const noexcept {
-  const Signature* const held = find(id);
-  return held != nullptr && held->stamp == stamp;
 }
 
 }  // namespace zonepack::packer

@@ -3,23 +3,26 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "packer/decode/map_reader.hpp"
+#include "packer/record/record.hpp"
 
 namespace zonepack::packer {
 
 // What a map holds of each signature besides its payloads, read from the core of every pack.
 //
-// Memory: some 100 bytes a signature and 4 bytes a link.
+// Memory: some 150 bytes a signature and 4 bytes a link.
 class HeldSignatures {
  public:
   struct Signature {
     ZoneId zone = kNoZone;
     std::int32_t session = 0;  // map_id
     double stamp = 0;
+    std::optional<Transform> odometry_pose;
     std::vector<std::int32_t> links;  // to signatures and, negative, to landmarks
   };
 
@@ -27,8 +30,6 @@ class HeldSignatures {
 
   const std::map<std::int32_t, Signature>& by_id() const noexcept { return by_id_; }
   const Signature* find(std::int32_t id) const noexcept;
-  // Whether the map holds this very signature: ids and stamps are those of one moment of mapping.
-  bool same(std::int32_t id, double stamp) const noexcept;
   // Signatures of each session.
   const std::map<std::int32_t, std::size_t>& sessions() const noexcept { return sessions_; }
 

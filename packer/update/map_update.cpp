@@ -398,10 +398,10 @@ void MapUpdate::pack(MapFolder& folder) {
 
 // A signature that the map keeps may have been linked to new ones since.
 void MapUpdate::add_links_to_newcomers(MapSource& database, SignatureRecord& record) const {
-  const NodeOutline* const node = database.outline().find(record.id);
-  if (node == nullptr || node->damaged || !held_.same(record.id, node->stamp)) return;
+  const std::optional<std::int32_t> id = newcomers_->numbers().in_database(record.id);
+  if (!id || database.outline().find(*id)->damaged) return;
   constexpr PayloadSet kNothing{false, false, false, false, false, false};
-  SignatureRecord now = database.read(record.id, kNothing);
+  SignatureRecord now = database.read(*id, kNothing);
   newcomers_->numbers().apply(now);
   for (Link& link : now.links) {
     const bool known = std::ranges::any_of(record.links, [&](const Link& held) {

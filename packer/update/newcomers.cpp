@@ -62,7 +62,7 @@ Newcomers::Newcomers(const MapSource& database, const HeldSignatures& held, cons
     newcomer.id = numbers_.id(node->id);
     newcomer.session = numbers_.session(node->map_id);
     newcomer.T_map_base = alignment_ ? alignment_->T_to_from(T) : T;
-    newcomer.held = held.same(node->id, node->stamp);
+    newcomer.held = numbers_.shares(*node);
     if (!options.sessions.takes(layers, newcomer.session)) {
       ++not_chosen_;
       continue;

@@ -6,6 +6,8 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace zonepack::packer {
 namespace {
@@ -28,7 +30,33 @@ std::int32_t mapped(const std::map<std::int32_t, std::int32_t>& numbers, std::in
 }  // namespace
 
 Renumbering::Renumbering(const HeldSignatures& held, const MapOutline& outline) {
-  for (const NodeOutline& node : outline.nodes) shared_ += held.same(node.id, node.stamp);
+  find_known(held, outline);
+  number_ids(held, outline);
+  number_sessions(held, outline);
+}
+
+void Renumbering::find_known(const HeldSignatures& held, const MapOutline& outline) {
+  for (const NodeOutline& node : outline.nodes) {
+    const HeldSignatures::Signature* const same = held.find(node.id);
+    if (same != nullptr && same->stamp == node.stamp) known_[node.id] = node.id;
+  }
+  grown_ = !known_.empty();
+  if (grown_) return;
+  std::map<std::pair<double, Transform>, std::int32_t> by_moment;
+  for (const auto& [id, signature] : held.by_id()) {
+    if (signature.odometry_pose) by_moment[{signature.stamp, *signature.odometry_pose}] = id;
+  }
+  for (const NodeOutline& node : outline.nodes) {
+    if (!node.odometry_pose) continue;
+    const auto found = by_moment.find({node.stamp, *node.odometry_pose});
+    if (found == by_moment.end() || !known_.try_emplace(found->second, node.id).second) continue;
+    if (found->second != node.id) ids_[node.id] = found->second;
+  }
+}
+
+// All ids that change move by one offset, which a later update finds again, so that links to
+// signatures which are packed then lead to them.
+void Renumbering::number_ids(const HeldSignatures& held, const MapOutline& outline) {
   std::set<std::int32_t> referred;
   std::int32_t last = 0;
   for (const auto& [id, signature] : held.by_id()) {
@@ -36,30 +64,66 @@ Renumbering::Renumbering(const HeldSignatures& held, const MapOutline& outline) 
     for (const std::int32_t to : signature.links) {
       last = std::max(last, to);
       // A grown database has the very signature that a link of the map refers to.
-      if (!grown()) referred.insert(to);
+      if (!grown_) referred.insert(to);
     }
   }
-  for (const NodeOutline& node : outline.nodes) last = std::max(last, node.id);
-  for (const NodeOutline& node : outline.nodes) {
-    const bool taken = held.find(node.id) != nullptr || referred.contains(node.id);
-    if (taken && !held.same(node.id, node.stamp)) ids_[node.id] = next_after(last, "signature");
+  std::int64_t offset = last;
+  for (const auto& [of_map, of_database] : known_) {
+    if (of_map != of_database) offset = std::int64_t{of_map} - of_database;
   }
-  number_sessions(held, outline);
+  for (const NodeOutline& node : outline.nodes) last = std::max(last, node.id);
+  const auto taken = [&](std::int32_t id) {
+    if (held.find(id) != nullptr) return true;
+    const std::int64_t moved = id + offset;
+    const bool moved_before =
+        known_.empty() ||
+        (moved <= kMostNumber && referred.contains(static_cast<std::int32_t>(moved)));
+    return referred.contains(id) && moved_before;
+  };
+  std::vector<std::int32_t> others;
+  for (const NodeOutline& node : outline.nodes) {
+    if (shares(node) || !taken(node.id)) continue;
+    const std::int64_t moved = node.id + offset;
+    const bool free = moved > 0 && moved <= kMostNumber &&
+                      held.find(static_cast<std::int32_t>(moved)) == nullptr &&
+                      outline.find(static_cast<std::int32_t>(moved)) == nullptr;
+    if (!free) {
+      others.push_back(node.id);
+      continue;
+    }
+    ids_[node.id] = static_cast<std::int32_t>(moved);
+    last = std::max(last, static_cast<std::int32_t>(moved));
+  }
+  for (const std::int32_t id : others) ids_[id] = next_after(last, "signature");
 }
 
 void Renumbering::number_sessions(const HeldSignatures& held, const MapOutline& outline) {
-  std::set<std::int32_t> common, all;
+  std::map<std::int32_t, std::int32_t> common;  // of the map, by the database's
+  std::set<std::int32_t> all;
   std::int32_t last = 0;
   for (const auto& [session, count] : held.sessions()) last = std::max(last, session);
   for (const NodeOutline& node : outline.nodes) {
     last = std::max(last, node.map_id);
     all.insert(node.map_id);
-    if (held.same(node.id, node.stamp)) common.insert(node.map_id);
+    if (shares(node)) common.try_emplace(node.map_id, held.find(id(node.id))->session);
   }
   for (const std::int32_t session : all) {
-    if (!held.sessions().contains(session) || common.contains(session)) continue;
-    sessions_[session] = next_after(last, "session");
+    if (const auto known = common.find(session); known != common.end()) {
+      if (known->second != session) sessions_[session] = known->second;
+    } else if (held.sessions().contains(session)) {
+      sessions_[session] = next_after(last, "session");
+    }
   }
+}
+
+bool Renumbering::shares(const NodeOutline& node) const noexcept {
+  const auto known = known_.find(id(node.id));
+  return known != known_.end() && known->second == node.id;
+}
+
+std::optional<std::int32_t> Renumbering::in_database(std::int32_t of_map) const noexcept {
+  const auto known = known_.find(of_map);
+  return known == known_.end() ? std::nullopt : std::optional(known->second);
 }
 
 std::int32_t Renumbering::id(std::int32_t of_database) const noexcept {
