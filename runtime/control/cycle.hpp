@@ -153,6 +153,7 @@ class Cycle {
     std::size_t count = 0;
     std::size_t urgent = 0;
     std::size_t needed = 0;
+    const ZoneGraph* graph = nullptr;
     void add(ZoneId zone) noexcept;
   };
   Wanted list_wanted() const noexcept;

@@ -61,6 +61,7 @@ void MapSwitcher::begin(std::int64_t now_ns) noexcept {
   const PoseEstimate& pose = map_->cycle.state().pose;
   if (pose.valid) {
     zone_ = next_->graph.zone_near({pose.T_map_base.x_m, pose.T_map_base.y_m}, kNear_m);
+    if (zone_ != kNoZone && !next_->graph.loadable(zone_)) zone_ = kNoZone;
   }
   map_->cycle.keeper().hold(true);
   step_ = Step::kMakingRoom;

@@ -193,6 +193,7 @@ void RunStatistics::watch_zone(const CycleRecord& cycle) {
     true_zone_ = kNoZone;
   }
   if (!first_resident_ && cycle.counters.zones_loaded > 0) first_resident_ = cycles_ - 1;
+  if (own != kNoZone && !graph_->loadable(own)) own = kNoZone;
   localised_ = localised_ || (own != kNoZone && held_[own] == Held::kResident);
   absent_ = first_resident_ && own != kNoZone && held_[own] != Held::kResident;
   absent_cycles_ += absent_;
