@@ -98,7 +98,7 @@ cp "$golden/manifest-1.0.fbs" old.fbs
 flatc --json --strict-json --raw-binary --defaults-json old.fbs -- manifest.bin
 zp inspect map --json now.json
 [[ $(jq -c '[.zones[] | [.name, .pack, .signatures]]' manifest.json) == \
-   $(jq -c '[.zones[] | [.name, .pack, .signatures]]' now.json) ]] || fail "an old reader sees other zones"
+   "$(jq -c '[.zones[] | [.name, .pack, .signatures]]' now.json)" ]] || fail "an old reader sees other zones"
 jq -e 'has("layers") or has("changes") | not' manifest.json >/dev/null || fail "an old reader sees layers"
 zp build --db grown.db --zones "$zones" --out plain
 [[ $(od -An -tu2 -j10 -N2 plain/manifest.zpm | tr -d ' ') == 0 ]] || fail "a map without layers is not of minor version 0"
@@ -112,7 +112,7 @@ refused 2 "--replace ZONE or --add" update map --db grown.db
 refused 2 "--db" update map --add
 refused 2 "where a session's number belongs" update map --layer rooms=x
 refused 1 "none.db" update map --db none.db --add
-refused 1 "expected" update map --db "$zones" --add
+refused 1 "is not a SQLite database" update map --db "$zones" --add
 sqlite3 other.db "update Node set stamp = 5"
 printf '1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n' >path.txt
 refused 1 "path.txt: the alignment" update map --db other.db --replace C2 --align path.txt
