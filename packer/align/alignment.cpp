@@ -78,6 +78,49 @@ double at_share(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
+Matrix3Xd columns_at(const Matrix3Xd& all, const std::vector<Eigen::Index>& kept) {
+  Matrix3Xd out(3, static_cast<Eigen::Index>(kept.size()));
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    out.col(static_cast<Eigen::Index>(i)) = all.col(kept[i]);
+  }
+  return out;
+}
+
+// The fit of most places, however far a few are off: begins with that of all or of three, taken a
+// third of the way apart, which has the least median residual, and then twice takes all places
+// within three times the median.
+Similarity fit_most(const Matrix3Xd& from, const Matrix3Xd& to) {
+  constexpr Eigen::Index kTriples = 64;
+  const Eigen::Index n = from.cols();
+  const auto median = [&](const Similarity& s) { return at_share(residuals_of(s, from, to), 0.5); };
+  Similarity best = fit(from, to);
+  double least = median(best);
+  for (Eigen::Index i = 0; i < std::min(n, kTriples); ++i) {
+    const Eigen::Index first = i * n / std::min(n, kTriples);
+    const std::vector<Eigen::Index> triple = {first, (first + n / 3) % n, (first + 2 * n / 3) % n};
+    const Matrix3Xd three = columns_at(from, triple);
+    if (const Vector3d spread = spread_of(three); spread[1] <= 0.1 * spread[0]) continue;
+    const Similarity s = fit(three, columns_at(to, triple));
+    if (const double m = median(s); m < least) {
+      least = m;
+      best = s;
+    }
+  }
+  for (int round = 0; round < 2; ++round) {
+    const std::vector<double> residuals = residuals_of(best, from, to);
+    const double gate = 3 * at_share(residuals, 0.5);
+    std::vector<Eigen::Index> kept;
+    for (std::size_t i = 0; i < residuals.size(); ++i) {
+      if (residuals[i] <= gate) kept.push_back(static_cast<Eigen::Index>(i));
+    }
+    const Matrix3Xd near = columns_at(from, kept);
+    if (kept.size() < kLeastPairs) break;
+    if (const Vector3d spread = spread_of(near); spread[1] <= kStraight * spread[0]) break;
+    best = fit(near, columns_at(to, kept));
+  }
+  return best;
+}
+
 void require_meeting(const std::vector<KeyframePose>& keyframes, const Trajectory& trajectory,
                      std::size_t pairs, const Placement& placement, const std::string& source) {
   if (pairs >= kLeastPairs) return;
@@ -89,13 +132,6 @@ void require_meeting(const std::vector<KeyframePose>& keyframes, const Trajector
                            seconds(trajectory.poses().back().stamp_s) + ", the keyframes' from " +
                            seconds(first.stamp_s) + " to " + seconds(last.stamp_s) +
                            ". Give the trajectory of the same drive, by the same clock");
-}
-
-Matrix3Xd kept_columns(const Matrix3Xd& all, const std::vector<Eigen::Index>& kept) {
-  Matrix3Xd out(3, static_cast<Eigen::Index>(kept.size()));
-  for (std::size_t i = 0; i < kept.size(); ++i)
-    out.col(static_cast<Eigen::Index>(i)) = all.col(kept[i]);
-  return out;
 }
 
 // How the camera is turned in the base: the mean of what each keyframe and the trajectory at its
@@ -157,20 +193,8 @@ void align_to_trajectory(const std::vector<KeyframePose>& keyframes, const Place
         " stand on a line, so their places alone do not say which side is up; give --scale, --up "
         "and --camera-in-base instead of --align");
   }
-  Similarity s = fit(from, to);
-  std::vector<double> residuals = residuals_of(s, from, to);
-  const double gate = 3 * at_share(residuals, 0.5);
-  std::vector<Eigen::Index> kept;
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    if (residuals[i] <= gate) kept.push_back(static_cast<Eigen::Index>(i));
-  }
-  if (kept.size() >= kLeastPairs && kept.size() < residuals.size()) {
-    const Matrix3Xd best = kept_columns(from, kept);
-    if (const Vector3d left = spread_of(best); left[1] > kStraight * left[0]) {
-      s = fit(best, kept_columns(to, kept));
-      residuals = residuals_of(s, from, to);
-    }
-  }
+  const Similarity s = fit_most(from, to);
+  const std::vector<double> residuals = residuals_of(s, from, to);
   if (!(s.metres_per_unit > 0) || !std::isfinite(s.metres_per_unit)) {
     throw std::runtime_error(placement.trajectory.string() +
                              ": no similarity fits the keyframes of " + source);

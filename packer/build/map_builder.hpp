@@ -35,7 +35,8 @@ struct BuildOptions {
   DamagedPolicy damaged = DamagedPolicy::kError;
   std::vector<NamedLayer> layers;  // sorted by name, as merged_layers() gives them
   SessionChoice sessions;
-  unsigned jobs = 0;  // 0: one per core
+  unsigned jobs = 0;     // 0: one per core
+  std::string detector;  // what found the features, where the source is wrong; empty: as it says
 };
 
 struct BuildSummary {

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <iomanip>
 #include <iostream>
 #include <map>
@@ -57,6 +58,7 @@ nlohmann::ordered_json to_json(const BuildSummary& s, const std::filesystem::pat
   }
   json["charged_bytes"] = s.charged_bytes;
   json["charged_over_feature_rows"] = ratio(s.charged_bytes, s.feature_row_bytes);
+  json["charged_over_source"] = ratio(s.charged_bytes, s.source_bytes);
   json["stored_bytes"] = s.stored_bytes;
   json["stored_over_source"] = ratio(s.stored_bytes, s.source_bytes);
   json["source_bytes"] = s.source_bytes;
@@ -162,7 +164,9 @@ void run_build(const BuildArguments& arguments, std::ostream& text) {
        << counted(s.features, "feature") << " in " << counted(s.packs.size(), "zone")
        << (s.unchanged ? " (unchanged)" : "") << "\n"
        << std::fixed << std::setprecision(3) << "  charged " << size_text(s.charged_bytes) << ", "
-       << ratio(s.charged_bytes, s.feature_row_bytes) << " of the database's feature rows; stored "
+       << ratio(s.charged_bytes, s.feature_row_bytes > 0 ? s.feature_row_bytes : s.source_bytes)
+       << (s.feature_row_bytes > 0 ? " of the database's feature rows; stored "
+                                   : " of the source's points; stored ")
        << size_text(s.stored_bytes) << ", " << ratio(s.stored_bytes, s.source_bytes)
        << " of the database's own\n"
        << "  smallest budget " << size_text(s.smallest.bytes) << "\n";
@@ -220,6 +224,19 @@ void add_build_command(CLI::App& app, int& exit_code) {
       {{"error", DamagedPolicy::kError}, {"skip", DamagedPolicy::kSkip}},
       "signatures that cannot be read whole: error (default) or skip");
   add_session_options(*command, options.layers, options.sessions);
+  command
+      ->add_option(
+          "--detector", options.detector,
+          "what found the features, where the map does not say it or says it wrongly: "
+          "RTAB-Map's number and settings, such as '8 Kp/MaxFeatures:400;GFTT/MinDistance:7'")
+      ->check([](const std::string& text) {
+        const bool fits =
+            !text.empty() && text.size() <= 1000 && text[0] >= '0' && text[0] <= '9' &&
+            std::ranges::all_of(text, [](unsigned char c) { return c >= 32 && c < 127; });
+        return fits ? std::string()
+                    : "'" + text + "' does not begin with RTAB-Map's number of a detector";
+      })
+      ->type_name("TEXT");
   command->add_option("--jobs", options.jobs, "threads; default one per core")
       ->check(CLI::Range(1, 256))
       ->type_name("N");

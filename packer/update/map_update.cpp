@@ -115,6 +115,7 @@ class MapUpdate {
   std::set<std::string> replaced_;
   std::vector<Content> contents_;             // by zone of the plan
   std::vector<std::uint32_t> place_of_held_;  // by zone of the map: of the plan, if it is kept
+  std::optional<ZoneLookup> lookup_;  // of the plan's zones, for sources that cut at borders
   std::unique_ptr<MapSource> database_;
   std::optional<Newcomers> newcomers_;
   std::set<std::int32_t> taken_;  // ids of newcomers that are packed
@@ -194,7 +195,12 @@ void MapUpdate::require_kind() const {
 }
 
 void MapUpdate::open_database() {
-  database_ = open_source(options_.source);
+  SourceOptions source = options_.source;
+  lookup_.emplace(plan_.zones);
+  source.zone_at = [this](double x_m, double y_m, double z_m) {
+    return lookup_->at({x_m, y_m}, z_m);
+  };
+  database_ = open_source(source);
   require_kind();
   newcomers_.emplace(*database_, held_, plan_, options_, layers_,
                      options_.unlinked.value_or(packed_.unlinked));

@@ -55,6 +55,13 @@ if(TARGET zonepack)
                    ${PROJECT_SOURCE_DIR})
   set_tests_properties(system/update PROPERTIES TIMEOUT 300)
   set_tests_properties(system/packer_examples system/packer_hints PROPERTIES TIMEOUT 300)
+  add_test(NAME system/stella
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/stella_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  add_test(NAME system/clouds
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/cloud_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/stella system/clouds PROPERTIES TIMEOUT 600)
 endif()
 
 # Maps that ask for more memory than the budget: at start, at SIGHUP, and after the refusal.

@@ -65,7 +65,7 @@ void require_camera_pose(const Eigen::Isometry3d& T, const CellPlace& place) {
       R.allFinite() && R.determinant() > 0 &&
       (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kTolerance;
   if (!rotation) place.damaged("expected a rotation, found none");
-  if (!(T.translation().cwiseAbs().maxCoeff() < kFurthest)) {
+  if (!T.translation().allFinite() || T.translation().cwiseAbs().maxCoeff() >= kFurthest) {
     place.damaged("expected a place within 10,000,000 units");
   }
 }
