@@ -6,13 +6,16 @@
 
 #include "packer/commands/build.hpp"
 #include "packer/commands/check_zones.hpp"
+#include "packer/commands/diff.hpp"
 #include "packer/commands/export.hpp"
 #include "packer/commands/inspect.hpp"
+#include "packer/commands/log.hpp"
 #include "packer/commands/outline.hpp"
 #include "packer/commands/plan.hpp"
 #include "packer/commands/prune.hpp"
 #include "packer/commands/report.hpp"
 #include "packer/commands/suggest_zones.hpp"
+#include "packer/commands/update.hpp"
 #include "packer/commands/verify.hpp"
 #include "platform/command_line/command_line.hpp"
 #include "platform/signals.hpp"
@@ -37,6 +40,9 @@ int main(int argc, char** argv) {
   });
   int exit_code = 0;
   zonepack::packer::add_build_command(app, exit_code);
+  zonepack::packer::add_update_command(app, exit_code);
+  zonepack::packer::add_diff_command(app, exit_code);
+  zonepack::packer::add_log_command(app, exit_code);
   zonepack::packer::add_check_zones_command(app, exit_code);
   zonepack::packer::add_export_command(app, exit_code);
   zonepack::packer::add_outline_command(app, exit_code);

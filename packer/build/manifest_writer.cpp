@@ -3,6 +3,7 @@
 
 #include <lz4.h>
 
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -87,7 +88,48 @@ flatbuffers::Offset<fb::Zone> zone_table(Builder& builder, const PlannedZone& zo
                         zone.z_min_m.value_or(-kInfinity), zone.z_max_m.value_or(kInfinity));
 }
 
+using Names = flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>>;
+
+Names names(Builder& builder, const std::vector<std::string>& list) {
+  return list.empty() ? 0 : builder.CreateVectorOfStrings(list);
+}
+
+flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<fb::Layer>>> layers(
+    Builder& builder, const std::vector<NamedLayer>& list) {
+  if (list.empty()) return 0;
+  std::vector<flatbuffers::Offset<fb::Layer>> tables;
+  for (const NamedLayer& layer : list) {
+    std::vector<fb::SessionRange> sessions;
+    for (const auto& [first, last] : layer.sessions) sessions.emplace_back(first, last);
+    const auto name = builder.CreateString(layer.name);
+    tables.push_back(fb::CreateLayer(builder, name, builder.CreateVectorOfStructs(sessions)));
+  }
+  return builder.CreateVector(tables);
+}
+
+flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<fb::Change>>> changes(
+    Builder& builder, const std::vector<VersionChange>& list) {
+  if (list.empty()) return 0;
+  std::vector<flatbuffers::Offset<fb::Change>> tables;
+  for (const VersionChange& change : list) {
+    const auto parent = digest(builder, change.parent);
+    const auto what = builder.CreateString(change.what);
+    const Names added = names(builder, change.added);
+    const Names removed = names(builder, change.removed);
+    const Names changed = names(builder, change.changed);
+    tables.push_back(fb::CreateChange(builder, parent, what, change.zones, change.signatures,
+                                      change.pack_bytes, added, removed, changed));
+  }
+  return builder.CreateVector(tables);
+}
+
 }  // namespace
+
+fb::Node node_at(std::int32_t id, const Transform& T_map_base) {
+  // Yaw is for people and pictures. The pose is a row-major 3x4 matrix: [0] is cos, [4] is sin.
+  const float yaw = std::atan2(T_map_base[4], T_map_base[0]);
+  return {T_map_base[3], T_map_base[7], T_map_base[11], yaw, id};
+}
 
 Bytes manifest_bytes(const ManifestContent& content) {
   const ZonePlan& plan = *content.plan;
@@ -115,12 +157,16 @@ Bytes manifest_bytes(const ManifestContent& content) {
   const auto zone_vector = builder.CreateVector(zones);
   const auto portal_vector = builder.CreateVector(portals);
   const auto edges = builder.CreateVectorOfStructs(content.edges);
+  const auto layer_vector = layers(builder, content.layers);
+  const auto change_vector = changes(builder, content.changes);
   fb::FinishManifestBuffer(
       builder, fb::CreateManifest(builder, lineage, frame, static_cast<std::uint32_t>(kSlotBytes),
-                                  content.payload, zone_vector, portal_vector, edges, provenance));
+                                  content.payload, zone_vector, portal_vector, edges, provenance, 0,
+                                  layer_vector, change_vector));
   require_within(LimitId::kManifestBytes, builder.GetSize());
   ManifestHeader header;
   header.size = builder.GetSize();
+  if (!content.layers.empty() || !content.changes.empty()) header.minor = kManifestMinorOfLayers;
   Bytes file(sizeof header + header.size + sizeof(ManifestTail));
   std::memcpy(file.data(), &header, sizeof header);
   std::memcpy(file.data() + sizeof header, builder.GetBufferPointer(), header.size);

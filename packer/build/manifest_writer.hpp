@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "packer/encode/pack_writer.hpp"
@@ -10,6 +11,22 @@
 #include "runtime/pack_format/file/manifest_file.hpp"
 
 namespace zonepack::packer {
+
+// Sessions (map_id) under one name; both ends of a range included.
+struct NamedLayer {
+  std::string name;
+  std::vector<std::pair<std::int32_t, std::int32_t>> sessions;  // ascending, disjoint
+};
+
+// What made a version from the one before.
+struct VersionChange {
+  Digest32 parent{};  // of the manifest before
+  std::string what;
+  std::uint32_t zones = 0;  // of the version before, like the next two
+  std::uint64_t signatures = 0;
+  std::uint64_t pack_bytes = 0;
+  std::vector<std::string> added, removed, changed;  // zones, sorted
+};
 
 struct ManifestContent {
   const ZonePlan* plan = nullptr;
@@ -21,10 +38,15 @@ struct ManifestContent {
   std::string source_kind, source_version, options, detector;
   std::uint64_t source_feature_count = 0;
   std::uint64_t source_bytes = 0;
+  std::vector<NamedLayer> layers;      // sorted by name
+  std::vector<VersionChange> changes;  // oldest first
 };
 
-// The bytes of manifest.zpm. Throws std::runtime_error naming the limit of the format that the
-// content exceeds.
+// A signature's entry in the coarse pose graph.
+fb::Node node_at(std::int32_t id, const Transform& T_map_base);
+
+// The bytes of manifest.zpm: of minor version 0 without layers and changes. Throws
+// std::runtime_error naming the limit of the format that the content exceeds.
 Bytes manifest_bytes(const ManifestContent& content);
 
 }  // namespace zonepack::packer

@@ -10,8 +10,12 @@
 #include <stdexcept>
 #include <thread>
 
+#include "packer/build/damages.hpp"
 #include "packer/build/manifest_writer.hpp"
 #include "packer/build/map_folder.hpp"
+#include "packer/build/payload_set.hpp"
+#include "packer/build/placing.hpp"
+#include "packer/build/provenance.hpp"
 #include "packer/build/repeated_features.hpp"
 #include "packer/encode/packable.hpp"
 #include "packer/sources/open_source.hpp"
@@ -20,24 +24,6 @@
 
 namespace zonepack::packer {
 namespace {
-
-PayloadSet payload_set(PayloadMask mask) {
-  const auto has = [mask](fb::PayloadKind kind) { return (mask & mask_of(kind)) != 0; };
-  return {has(fb::PayloadKind::Features), has(fb::PayloadKind::Scan),
-          has(fb::PayloadKind::Grid),     has(fb::PayloadKind::Image),
-          has(fb::PayloadKind::Depth),    has(fb::PayloadKind::UserData)};
-}
-
-fb::Node node_at(std::int32_t id, const Transform& T_map_base) {
-  // Yaw is for people and pictures. The pose is a row-major 3x4 matrix: [0] is cos, [4] is sin.
-  const float yaw = std::atan2(T_map_base[4], T_map_base[0]);
-  return {T_map_base[3], T_map_base[7], T_map_base[11], yaw, id};
-}
-
-std::vector<Damage> sorted(std::vector<Damage> damages) {
-  std::ranges::sort(damages, {}, [](const Damage& d) { return std::tie(d.signature, d.column); });
-  return damages;
-}
 
 class MapBuilder {
  public:
@@ -65,8 +51,8 @@ class MapBuilder {
   void pack(MapFolder& folder, const ZonePlan& plan, const std::vector<std::uint32_t>& zone_of);
   void pack_zone(MapSource& source, MapFolder& folder, std::size_t zone);
   void split(MapFolder& folder);
+  void name_layers();
   void finish(MapFolder& folder);
-  void refuse_damaged() const;
   ByteCount charged(std::size_t zone) const;
   std::vector<fb::ZoneEdge> edges() const;
   Digest16 lineage() const;
@@ -80,6 +66,7 @@ class MapBuilder {
 
   std::vector<SignaturePlace> places_;  // of the signatures to pack, by id
   std::vector<fb::Node> nodes_;         // of the same signatures
+  std::vector<std::int32_t> sessions_;  // of the same signatures
   ZonePlan plan_;
   std::vector<std::uint32_t> zone_of_;
   std::vector<std::vector<std::size_t>> members_;  // by zone: indices into places_
@@ -108,9 +95,12 @@ void MapBuilder::outline() {
   for (const Finding& finding : zones_.findings.warnings) {
     summary_.warnings.push_back(to_string(finding, options_.zones.string()));
   }
-  summary_.feature_row_bytes = outline.feature_bytes;
-  summary_.source_bytes = summary_.feature_row_bytes + outline.scan_bytes + outline.grid_bytes;
+  const SourceBytes source = source_bytes(outline);
+  summary_.feature_row_bytes = source.feature_rows;
+  summary_.source_bytes = source.bytes;
   require_signatures(outline, options_.source.name());
+  for (const NodeOutline& node : outline.nodes) ++summary_.sessions[node.map_id];
+  require_known(options_.sessions, options_.layers, summary_.sessions, options_.source.name());
   damages_ = outline.damages;
   for (const Damage& damage : damages_) skipped_.insert(damage.signature);
   if (options_.unlinked == UnlinkedPolicy::kError && outline.unlinked() > 0) {
@@ -123,28 +113,22 @@ void MapBuilder::outline() {
 }
 
 void MapBuilder::place() {
-  std::set<std::int32_t> placed_sessions;
-  for (const NodeOutline& node : source_->outline().nodes) {
-    if (node.pose) placed_sessions.insert(node.map_id);
-  }
-  const bool all = options_.unlinked == UnlinkedPolicy::kOdometryAll || placed_sessions.empty();
-  for (const NodeOutline& node : source_->outline().nodes) {
-    if (node.damaged) continue;
-    const bool connected = all || placed_sessions.contains(node.map_id);
-    const bool by_odometry = options_.unlinked == UnlinkedPolicy::kOdometry ||
-                             options_.unlinked == UnlinkedPolicy::kOdometryAll;
-    if (by_odometry && !connected) ++summary_.unconnected_by_session[node.map_id];
-    const bool odometry = by_odometry && connected;
-    const std::optional<Transform>& base = node.pose  ? node.pose
-                                           : odometry ? node.odometry_pose
-                                                      : node.pose;
-    if (!base) {
-      ++summary_.unlinked_dropped;
+  const Placing placing = place_signatures(source_->outline(), options_.unlinked);
+  summary_.unconnected_by_session = placing.unconnected_by_session;
+  summary_.unlinked_dropped = placing.dropped;
+  for (const auto& [node, T] : placing.placed) {
+    if (!options_.sessions.takes(options_.layers, node->map_id)) {
+      ++summary_.not_chosen;
       continue;
     }
-    const Transform& T = *base;
-    places_.push_back({node.id, {T[3], T[7]}, T[11]});
-    nodes_.push_back(node_at(node.id, T));
+    places_.push_back({node->id, {T[3], T[7]}, T[11]});
+    nodes_.push_back(node_at(node->id, T));
+    sessions_.push_back(node->map_id);
+  }
+  if (places_.empty() && summary_.not_chosen > 0) {
+    throw std::runtime_error(options_.source.name() +
+                             ": no signature is left; --layers and --drop-session leave out all " +
+                             std::to_string(summary_.not_chosen));
   }
   for (const auto& [session, count] : summary_.unconnected_by_session) {
     summary_.warnings.push_back(
@@ -204,7 +188,7 @@ void MapBuilder::pack(MapFolder& folder, const ZonePlan& plan,
   threads.clear();
   if (failure) std::rethrow_exception(failure);
   source_->require_unchanged();
-  refuse_damaged();
+  refuse_damaged(damages_, options_.damaged, options_.source.name());
   progress_.finish(std::to_string(total) + " signatures of " + std::to_string(order.size()) +
                    " zones on " + std::to_string(jobs) + (jobs == 1 ? " core" : " cores"));
 }
@@ -236,24 +220,6 @@ void MapBuilder::pack_zone(MapSource& source, MapFolder& folder, std::size_t zon
   }
   packs_[zone] = writer.finish(options_.payload);
   folder.keep(packs_[zone].file);
-}
-
-void MapBuilder::refuse_damaged() const {
-  if (damages_.empty() || options_.damaged == DamagedPolicy::kSkip) return;
-  constexpr std::size_t kShown = 20;
-  const std::vector<Damage> shown = sorted(damages_);
-  std::string text = options_.source.name() + ": " + std::to_string(shown.size()) +
-                     (shown.size() == 1 ? " signature" : " signatures") +
-                     " damaged or beyond what a pack holds; repair the database, or leave them out "
-                     "with --damaged skip";
-  for (std::size_t i = 0; i < std::min(shown.size(), kShown); ++i) {
-    // A row whose own id is wrong has no number to be named by.
-    const std::string which =
-        shown[i].signature == 0 ? "a signature" : "signature " + std::to_string(shown[i].signature);
-    text += "\n  " + which + ", " + shown[i].column + ": " + shown[i].problem;
-  }
-  if (shown.size() > kShown) text += "\n  and " + std::to_string(shown.size() - kShown) + " more";
-  throw std::runtime_error(text);
 }
 
 ByteCount MapBuilder::charged(std::size_t zone) const {
@@ -328,6 +294,18 @@ Digest16 MapBuilder::lineage() const {
   return blake2b_16(std::as_bytes(std::span(text)));
 }
 
+// A zone without a layer of its own gets that of most of its signatures.
+void MapBuilder::name_layers() {
+  for (std::size_t zone = 0; zone < plan_.zones.size(); ++zone) {
+    if (!plan_.zones[zone].layer.empty()) continue;
+    SessionCounts counts;
+    for (const std::size_t member : members_[zone]) {
+      if (!skipped_.contains(places_[member].id)) ++counts[sessions_[member]];
+    }
+    plan_.zones[zone].layer = most_common_layer(options_.layers, counts);
+  }
+}
+
 void MapBuilder::finish(MapFolder& folder) {
   // In a whole database a robot that stands still in a simulation may see the same image twice.
   if (const auto repeated = repeated_.text(); repeated && !damages_.empty()) {
@@ -337,7 +315,9 @@ void MapBuilder::finish(MapFolder& folder) {
         "of them is right; check the file with: sqlite3 " +
         shell_quoted(options_.source.name()) + " 'PRAGMA integrity_check'");
   }
+  if (!options_.layers.empty()) name_layers();
   ManifestContent content;
+  content.layers = options_.layers;
   content.plan = &plan_;
   content.packs = &packs_;
   for (const auto& members : members_) {
@@ -351,12 +331,11 @@ void MapBuilder::finish(MapFolder& folder) {
   content.payload = options_.payload;
   content.source_kind = source_->outline().kind;
   content.source_version = summary_.schema_version;
-  static constexpr const char* kOrphans[] = {"nearest", "drop", "error"};
-  static constexpr const char* kUnlinked[] = {"odometry", "drop", "error", "odometry-all"};
-  content.options = std::string("orphans=") + kOrphans[static_cast<std::size_t>(options_.orphans)] +
-                    " unlinked=" + kUnlinked[static_cast<std::size_t>(options_.unlinked)] +
-                    " max_zone_bytes=" + std::to_string(options_.max_zone_bytes) +
-                    " snap=" + number_text(options_.snap_m);
+  content.options = packing_text({.orphans = options_.orphans,
+                                  .unlinked = options_.unlinked,
+                                  .max_zone_bytes = options_.max_zone_bytes,
+                                  .snap_m = options_.snap_m,
+                                  .sessions = options_.sessions});
   content.detector = options_.detector.empty() ? source_->outline().detector : options_.detector;
   content.source_feature_count = source_->outline().feature_count;
   content.source_bytes = summary_.source_bytes;

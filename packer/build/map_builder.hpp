@@ -8,7 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "packer/build/damages.hpp"
+#include "packer/build/placing.hpp"
 #include "packer/build/progress.hpp"
+#include "packer/build/sessions.hpp"
 #include "packer/encode/pack_writer.hpp"
 #include "packer/record/source_kind.hpp"
 #include "packer/zones/orphans.hpp"
@@ -20,11 +23,6 @@
 // Builds a map, a folder with one pack per zone and a manifest, from a database and a zone file.
 namespace zonepack::packer {
 
-// kOdometry leaves out sessions of which nothing has an optimised pose while others have: their
-// odometry starts at a place of its own.
-enum class UnlinkedPolicy : std::uint8_t { kOdometry, kDrop, kError, kOdometryAll };
-enum class DamagedPolicy : std::uint8_t { kSkip, kError };
-
 struct BuildOptions {
   SourceOptions source;
   std::filesystem::path zones;
@@ -35,6 +33,8 @@ struct BuildOptions {
   double snap_m = kDefaultSnap_m;
   UnlinkedPolicy unlinked = UnlinkedPolicy::kOdometry;
   DamagedPolicy damaged = DamagedPolicy::kError;
+  std::vector<NamedLayer> layers;  // sorted by name, as merged_layers() gives them
+  SessionChoice sessions;
   unsigned jobs = 0;     // 0: one per core
   std::string detector;  // what found the features, where the source is wrong; empty: as it says
 };
@@ -47,6 +47,8 @@ struct BuildSummary {
   std::map<std::int32_t, std::size_t> unlinked_by_session;
   std::map<std::int32_t, std::size_t> unconnected_by_session;  // of these, left out with kOdometry
   std::size_t unlinked_dropped = 0;
+  std::map<std::int32_t, std::size_t> sessions;  // signatures of each, packed or not
+  std::size_t not_chosen = 0;                    // signatures of sessions that are left out
   std::vector<Orphan> orphans;
   std::string orphans_text;  // near which zones they stand
   std::optional<Misdrawn> misdrawn;

@@ -14,6 +14,7 @@
 
 #include "packer/build/leftovers.hpp"
 #include "packer/build/map_builder.hpp"
+#include "packer/commands/session_options.hpp"
 #include "packer/commands/source_options.hpp"
 #include "packer/console/command_line.hpp"
 #include "packer/console/output_path.hpp"
@@ -45,6 +46,9 @@ nlohmann::ordered_json to_json(const BuildSummary& s, const std::filesystem::pat
     json["signatures_unlinked"][std::to_string(session)] = count;
   }
   json["signatures_unlinked_dropped"] = s.unlinked_dropped;
+  json["sessions"] = nlohmann::ordered_json::object();
+  for (const auto& [session, count] : s.sessions) json["sessions"][std::to_string(session)] = count;
+  json["signatures_not_chosen"] = s.not_chosen;
   json["orphans"] = s.orphans.size();
   json["orphans_dropped"] = s.orphans_dropped;
   json["damaged"] = nlohmann::ordered_json::array();
@@ -94,6 +98,10 @@ void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostr
                 ? "left out (--unlinked drop)"
                 : "placed by odometry, which may be far off (--unlinked odometry)")
         << "\n";
+  }
+  if (s.not_chosen > 0) {
+    out << counted(s.not_chosen, "signature") << " of other sessions left out (--layers, "
+        << "--drop-session)\n";
   }
   if (options.unlinked != UnlinkedPolicy::kDrop && s.unlinked_dropped > unconnected) {
     out << "WARNING: "
@@ -215,6 +223,7 @@ void add_build_command(CLI::App& app, int& exit_code) {
       *command, "--damaged", options.damaged,
       {{"error", DamagedPolicy::kError}, {"skip", DamagedPolicy::kSkip}},
       "signatures that cannot be read whole: error (default) or skip");
+  add_session_options(*command, options.layers, options.sessions);
   command
       ->add_option(
           "--detector", options.detector,
@@ -236,7 +245,9 @@ void add_build_command(CLI::App& app, int& exit_code) {
                           "zonepack build --db map.db --zones zones.geojson --out map "
                           "--max-zone-bytes 2MiB --payload features,scan,grid",
                           "zonepack build --db map.db --zones zones.geojson --out map --orphans "
-                          "error --damaged skip --json -"});
+                          "error --damaged skip --json -",
+                          "zonepack build --db map.db --zones zones.geojson --out map "
+                          "--layer skeleton=0 --layers skeleton"});
   command->callback([arguments, &exit_code] {
     run_build(*arguments, arguments->json.text());
     exit_code = 0;

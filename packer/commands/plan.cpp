@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "packer/commands/plan.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
+#include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,6 +14,7 @@
 #include "packer/console/words.hpp"
 #include "packer/decode/map_reader.hpp"
 #include "packer/inspect/map_plan.hpp"
+#include "platform/base/nearest_word.hpp"
 #include "platform/command_line/command_line.hpp"
 
 namespace zonepack::packer {
@@ -30,6 +34,7 @@ struct PlanArguments {
   ByteCount budget = 0;
   PayloadMask payload = kDefaultPayload;
   std::vector<std::string> pins;
+  std::vector<std::string> layers;
   JsonOutput json;
 };
 
@@ -63,6 +68,9 @@ nlohmann::ordered_json to_json(const MapPlan& plan, const PlanArguments& argumen
   json["zones"] = nlohmann::ordered_json::array();
   for (const ZoneCost& zone : plan.zones) {
     json["zones"].push_back({{"name", zone.name},
+                             {"layer", zone.layer.empty() ? nlohmann::ordered_json()
+                                                          : nlohmann::ordered_json(zone.layer)},
+                             {"loaded", zone.loaded},
                              {"signatures", zone.signatures},
                              {"slots", zone.slots},
                              {"charged_bytes", zone.charged_bytes},
@@ -108,19 +116,26 @@ void print(const BudgetPlan& b, const MapPlan& plan, std::ostream& out) {
 }
 
 void print(const MapPlan& plan, std::ostream& out) {
-  TextTable table({"zone", "signatures", "charged MiB", "stored MiB", ""});
+  const bool layers =
+      std::ranges::any_of(plan.zones, [](const ZoneCost& zone) { return !zone.layer.empty(); });
+  const auto row = [layers](std::vector<std::string> cells) {
+    if (!layers) cells.erase(cells.begin() + 1);
+    return cells;
+  };
+  TextTable table(row({"zone", "layer", "signatures", "charged MiB", "stored MiB", ""}));
   std::uint64_t signatures = 0, charged = 0, stored = 0;
   std::vector<std::string> names;
   for (const ZoneCost& zone : plan.zones) names.push_back(zone.name);
   for (const std::size_t i : natural_order(names)) {
     const ZoneCost& zone = plan.zones[i];
-    table.add({zone.name, std::to_string(zone.signatures), mib_text(zone.charged_bytes),
-               mib_text(zone.stored_bytes), zone.pinned ? "pinned" : ""});
+    const char* const note = zone.pinned ? "pinned" : zone.loaded ? "" : "not loaded";
+    table.add(row({zone.name, zone.layer, std::to_string(zone.signatures),
+                   mib_text(zone.charged_bytes), mib_text(zone.stored_bytes), note}));
     signatures += zone.signatures;
     charged += zone.charged_bytes;
     stored += zone.stored_bytes;
   }
-  table.add({"all", std::to_string(signatures), mib_text(charged), mib_text(stored), ""});
+  table.add(row({"all", "", std::to_string(signatures), mib_text(charged), mib_text(stored), ""}));
   table.print(out);
   const std::string payload = payload_text(plan.payload);
   out << "\nloaded: core" << (payload.empty() ? "" : "," + payload) << "\nfixed "
@@ -129,6 +144,21 @@ void print(const MapPlan& plan, std::ostream& out) {
       << pair_text(plan, plan.smallest.pair.zone_a, plan.smallest.pair.zone_b)
       << "\nto change maps live " << size_text(plan.live_change_bytes) << "\n";
   if (plan.budget) print(*plan.budget, plan, out);
+}
+
+void require_layers(const fb::Manifest& manifest, const std::vector<std::string>& layers,
+                    const std::string& folder) {
+  std::set<std::string> known;
+  for (const fb::Zone* zone : *manifest.zones()) {
+    if (zone->layer() != nullptr) known.insert(zone->layer()->str());
+  }
+  for (const std::string& layer : layers) {
+    if (known.contains(layer)) continue;
+    throw std::runtime_error(folder + ": no zone of this map is of layer '" + layer + "'" +
+                             (known.empty()
+                                  ? "; none has a layer"
+                                  : known_words_text(layer, {known.begin(), known.end()})));
+  }
 }
 
 }  // namespace
@@ -148,6 +178,13 @@ void add_plan_command(CLI::App& app, int& exit_code) {
       ->type_name("ZONE")
       ->take_all()
       ->allow_extra_args(false);
+  command
+      ->add_option("--layers", arguments->layers,
+                   "zones of other layers are never loaded, as memory.layers has it")
+      ->type_name("NAME,NAME")
+      ->delimiter(',')
+      ->take_all()
+      ->allow_extra_args(false);
   arguments->json.add_option(*command);
   add_examples(*command, {"zonepack plan map", "zonepack plan map --budget 8MiB --pin L1",
                           "zonepack plan map --payload features --json -"});
@@ -160,6 +197,7 @@ void add_plan_command(CLI::App& app, int& exit_code) {
     if (payload->count() > 0 && missing != 0) {
       text << "note: this map holds no " << payload_text(missing) << "\n";
     }
+    require_layers(map.manifest(), arguments->layers, arguments->folder);
     std::vector<ZoneId> pinned;
     for (const std::string& pin : arguments->pins) {
       for (const ZoneId zone : map.zones_named(pin)) pinned.push_back(zone);
@@ -167,7 +205,7 @@ void add_plan_command(CLI::App& app, int& exit_code) {
     const MapPlan plan =
         plan_map(map.manifest(), arguments->payload & packed, pinned,
                  budget->count() > 0 ? std::optional(arguments->budget) : std::nullopt,
-                 map.manifest_file().size());
+                 map.manifest_file().size(), arguments->layers);
     print(plan, text);
     arguments->json.write(to_json(plan, *arguments));
     exit_code = plan.budget && !plan.budget->suffices ? 1 : 0;

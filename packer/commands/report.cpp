@@ -35,6 +35,7 @@ report::PackedZone zone_of(const fb::Zone& zone, std::uint32_t slots, PayloadMas
   report::PackedZone out{.name = zone.name()->str(),
                          .zone_type = flatbuffers::GetString(zone.zone_type()),
                          .label = flatbuffers::GetString(zone.label()),
+                         .layer = flatbuffers::GetString(zone.layer()),
                          .polygon = polygon_of(zone),
                          .signatures = zone.signatures(),
                          .features = zone.features(),

@@ -86,6 +86,19 @@ Json portals_json(const fb::Manifest& manifest) {
   return json;
 }
 
+Json layers_json(const fb::Manifest& manifest) {
+  Json json = Json::array();
+  if (manifest.layers() == nullptr) return json;
+  for (const fb::Layer* layer : *manifest.layers()) {
+    Json sessions = Json::array();
+    for (const fb::SessionRange* range : *layer->sessions()) {
+      sessions.push_back({range->first(), range->last()});
+    }
+    json.push_back({{"name", layer->name()->str()}, {"sessions", std::move(sessions)}});
+  }
+  return json;
+}
+
 // "8 Kp/MaxFeatures:400;GFTT/BlockSize:3": the detector, and its settings where the source has any.
 Json detector_part(const flatbuffers::String* text, bool settings) {
   if (text == nullptr) return nullptr;
@@ -159,6 +172,7 @@ nlohmann::ordered_json inspect_map(const std::string& folder, std::ostream& out)
   json["zones"] = Json::array();
   for (const fb::Zone* zone : *manifest.zones())
     json["zones"].push_back(zone_json(manifest, *zone));
+  json["layers"] = layers_json(manifest);
   json["portals"] = portals_json(manifest);
   json["provenance"] = provenance_json(*manifest.provenance());
   print(manifest, folder, version, out);

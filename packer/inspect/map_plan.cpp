@@ -58,8 +58,16 @@ BudgetPlan plan_budget(const MapCosts& costs, const MapPlan& plan, ByteCount byt
 }  // namespace
 
 MapPlan plan_map(const fb::Manifest& manifest, PayloadMask payload, std::span<const ZoneId> pinned,
-                 std::optional<ByteCount> budget, ByteCount file_bytes) {
-  const MapCosts costs = map_costs(manifest, file_bytes, payload);
+                 std::optional<ByteCount> budget, ByteCount file_bytes,
+                 const std::vector<std::string>& layers) {
+  MapCosts costs = map_costs(manifest, file_bytes, payload);
+  const auto loaded = [&](ZoneId id) {
+    const std::string layer = flatbuffers::GetString(manifest.zones()->Get(id)->layer());
+    return layers.empty() || layer.empty() || std::ranges::find(layers, layer) != layers.end();
+  };
+  for (ZoneId id = 0; id < costs.zone_slots.size(); ++id) {
+    if (!loaded(id)) costs.zone_slots[id] = 0;
+  }
   MapPlan plan;
   plan.payload = payload;
   plan.fixed_bytes = costs.fixed_bytes;
@@ -69,8 +77,14 @@ MapPlan plan_map(const fb::Manifest& manifest, PayloadMask payload, std::span<co
     const fb::Zone& zone = *manifest.zones()->Get(id);
     const std::uint32_t slots = costs.zone_slots[id];
     const bool is_pinned = std::find(pinned.begin(), pinned.end(), id) != pinned.end();
-    plan.zones.push_back({zone.name()->str(), zone.signatures(), slots, slots * kSlotBytes,
-                          chunk_bytes(zone, payload).stored, is_pinned});
+    plan.zones.push_back({.name = zone.name()->str(),
+                          .layer = flatbuffers::GetString(zone.layer()),
+                          .signatures = zone.signatures(),
+                          .slots = slots,
+                          .charged_bytes = slots * kSlotBytes,
+                          .stored_bytes = chunk_bytes(zone, payload).stored,
+                          .pinned = is_pinned,
+                          .loaded = loaded(id)});
     largest = std::max<std::uint64_t>(largest, slots);
   }
   plan.live_change_bytes = plan.smallest.bytes + charged_with(plan.fixed_bytes, largest);

@@ -12,11 +12,13 @@ namespace zonepack::packer {
 
 struct ZoneCost {
   std::string name;
+  std::string layer;  // empty: none
   std::uint32_t signatures = 0;
   std::uint32_t slots = 0;
   ByteCount charged_bytes = 0;  // slots x slot size
   ByteCount stored_bytes = 0;   // read for the payload
   bool pinned = false;
+  bool loaded = true;  // false: of a layer that is not chosen; it charges nothing
 };
 
 // What one budget allows while the pinned zones are always held.
@@ -48,8 +50,9 @@ struct MapPlan {
 };
 
 // `file_bytes`: of the manifest's file, which count from some hundred kilobytes on
-// (accounting.hpp).
+// (accounting.hpp). `layers`: zones of others are not loaded, as memory.layers says; empty: all are.
 MapPlan plan_map(const fb::Manifest& manifest, PayloadMask payload, std::span<const ZoneId> pinned,
-                 std::optional<ByteCount> budget, ByteCount file_bytes = 0);
+                 std::optional<ByteCount> budget, ByteCount file_bytes = 0,
+                 const std::vector<std::string>& layers = {});
 
 }  // namespace zonepack::packer

@@ -96,6 +96,20 @@ void check_portals(const fb::Manifest& manifest, Contradictions& contradictions)
   }
 }
 
+// Zones that an update added or drew anew. Other packs stay as they are then, with signatures that
+// stand in such a zone by now.
+std::set<std::string> zones_of_updates(const fb::Manifest& manifest) {
+  std::set<std::string> names;
+  if (manifest.changes() == nullptr) return names;
+  for (const fb::Change* change : *manifest.changes()) {
+    for (const auto* list : {change->added(), change->changed()}) {
+      if (list == nullptr) continue;
+      for (const flatbuffers::String* name : *list) names.insert(name->str());
+    }
+  }
+  return names;
+}
+
 // Checks the zone-in rule among the zones as they were before they were split; parts of one zone
 // share its signatures by a rule of their own.
 void check_places(const fb::Manifest& manifest, const Packs& packs,
@@ -123,6 +137,7 @@ void check_places(const fb::Manifest& manifest, const Packs& packs,
   const Partition partition = packer::partition(zones, places, OrphanPolicy::kNearest);
   std::set<SignatureId> orphans;
   for (const Orphan& orphan : partition.orphans) orphans.insert(orphan.id);
+  const std::set<std::string> updated = zones_of_updates(manifest);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const PlannedZone& by_rule = zones[partition.zone_of[i]];
     const PlannedZone& held = zones[holder[i]];
@@ -130,6 +145,7 @@ void check_places(const fb::Manifest& manifest, const Packs& packs,
     if (!held.parent.empty() && (by_rule.parent == held.parent || orphans.contains(places[i].id))) {
       continue;
     }
+    if (updated.contains(by_rule.name) || updated.contains(held.name)) continue;
     contradictions.push_back("signature " + std::to_string(places[i].id) +
                              " is in the pack of zone " + held.name +
                              ", by the polygons it belongs to zone " + by_rule.name);

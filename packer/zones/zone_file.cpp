@@ -25,46 +25,6 @@
 namespace zonepack::packer {
 namespace {
 
-std::string read_text(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) {
-    throw std::runtime_error(path + ": cannot read the zone file: " + std::strerror(ENOENT) +
-                             "; expected GeoJSON");
-  }
-  if (fs::is_directory(status)) {
-    throw std::runtime_error(path + ": is a folder, expected a GeoJSON file with the zones");
-  }
-  std::ifstream file(path, std::ios::binary);
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (!error && size > kMaxZoneFileBytes) {
-    throw std::runtime_error(path + ": is " + std::to_string(size) +
-                             " bytes long, a zone file has at most " +
-                             std::to_string(kMaxZoneFileBytes) +
-                             "; simplify the outlines (QGIS: Vector > Geometry Tools > Simplify)");
-  }
-  if (!error && size == 0) {
-    throw std::runtime_error(
-        path + ": cannot read the zone file: it is empty (0 bytes); expected GeoJSON");
-  }
-  std::ostringstream text;
-  if (file) text << file.rdbuf();
-  if (!file || !text) {
-    throw std::runtime_error(path + ": cannot read the zone file: " +
-                             (errno != 0 ? std::strerror(errno) : "it is empty") +
-                             "; expected GeoJSON");
-  }
-  std::string bytes = std::move(text).str();
-  if (const std::string kind = stand_in(bytes, path); !kind.empty()) {
-    throw std::runtime_error(path + ": is " + kind + "; expected GeoJSON");
-  }
-  if (const std::string kind = known_kind(bytes, path); !kind.empty()) {
-    throw std::runtime_error(path + ": is " + kind + ", not a zone file; expected GeoJSON");
-  }
-  return bytes;
-}
-
 void add_sound_zones(const Drawing& drawing, ZonePlan& plan) {
   std::set<std::string> names;
   for (const DrawnZone& drawn : drawing.zones) {
@@ -132,6 +92,46 @@ void check_portal_counts(const ZonePlan& plan, Findings& findings) {
 
 }  // namespace
 
+std::string read_zone_text(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) {
+    throw std::runtime_error(path + ": cannot read the zone file: " + std::strerror(ENOENT) +
+                             "; expected GeoJSON");
+  }
+  if (fs::is_directory(status)) {
+    throw std::runtime_error(path + ": is a folder, expected a GeoJSON file with the zones");
+  }
+  std::ifstream file(path, std::ios::binary);
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (!error && size > kMaxZoneFileBytes) {
+    throw std::runtime_error(path + ": is " + std::to_string(size) +
+                             " bytes long, a zone file has at most " +
+                             std::to_string(kMaxZoneFileBytes) +
+                             "; simplify the outlines (QGIS: Vector > Geometry Tools > Simplify)");
+  }
+  if (!error && size == 0) {
+    throw std::runtime_error(
+        path + ": cannot read the zone file: it is empty (0 bytes); expected GeoJSON");
+  }
+  std::ostringstream text;
+  if (file) text << file.rdbuf();
+  if (!file || !text) {
+    throw std::runtime_error(path + ": cannot read the zone file: " +
+                             (errno != 0 ? std::strerror(errno) : "it is empty") +
+                             "; expected GeoJSON");
+  }
+  std::string bytes = std::move(text).str();
+  if (const std::string kind = stand_in(bytes, path); !kind.empty()) {
+    throw std::runtime_error(path + ": is " + kind + "; expected GeoJSON");
+  }
+  if (const std::string kind = known_kind(bytes, path); !kind.empty()) {
+    throw std::runtime_error(path + ": is " + kind + ", not a zone file; expected GeoJSON");
+  }
+  return bytes;
+}
+
 ZoneFile parse_zone_file(std::string_view text, double snap_m) {
   ZoneFile result;
   ZonePlan& plan = result.plan;
@@ -156,7 +156,7 @@ ZoneFile parse_zone_file(std::string_view text, double snap_m) {
 }
 
 ZoneFile check_zone_file(const std::string& path, double snap_m) {
-  return parse_zone_file(read_text(path), snap_m);
+  return parse_zone_file(read_zone_text(path), snap_m);
 }
 
 ZoneFile load_zone_file(const std::string& path, double snap_m) {

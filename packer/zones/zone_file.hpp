@@ -48,6 +48,10 @@ ZoneFile check_zone_file(const std::string& path, double snap_m = kDefaultSnap_m
 // only.
 ZoneFile load_zone_file(const std::string& path, double snap_m = kDefaultSnap_m);
 
+// The text of a zone file. Throws std::runtime_error naming the file when it cannot be read, or is
+// something else.
+std::string read_zone_text(const std::string& path);
+
 // Why a name cannot name a zone or portal ("it is empty"); nothing when it can. Names become parts
 // of file names and appear unescaped in event logs: 1 to 64 bytes of UTF-8 without control
 // characters, / \ and ", not beginning or ending with a blank, and not beginning with a dot.

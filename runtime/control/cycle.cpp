@@ -89,8 +89,10 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
   }
   follow_zones(zone_before);
   const Wanted wanted = list_wanted();
+  // The first is not the robot's own where that is of a layer that is not used.
+  const bool own_first = tracker_.zone() == kNoZone || graph_.loadable(tracker_.zone());
   zone_keeper_.keep(now_ns, {wanted.zones.data(), wanted.count}, wanted.urgent, wanted.needed,
-                    !state_.lost || state_.pose.valid);
+                    own_first && (!state_.lost || state_.pose.valid));
 
   state_.zone_resident = state_.zone != kNoZone && memory_.resident(state_.zone);
   state_.map_ready = state_.pose.trusted && state_.zone_resident;
@@ -203,7 +205,7 @@ CommandReply Cycle::obey(const Command& command, std::int64_t now_ns) noexcept {
   const auto refuse = [&](Error error) { reply.error = error; };
   switch (command.kind) {
     case Command::Kind::kPin:
-      if (!exists(command.zone)) {
+      if (!exists(command.zone) || !graph_.loadable(command.zone)) {
         refuse({ErrorCode::kNotFound});
       } else if (const auto pinned = zone_keeper_.pin(command.zone); !pinned) {
         refuse(pinned.error());
@@ -238,7 +240,7 @@ CommandReply Cycle::obey(const Command& command, std::int64_t now_ns) noexcept {
       lose_pose();
       break;
     case Command::Kind::kSeek:
-      if (command.zone != kNoZone && !exists(command.zone)) {
+      if (command.zone != kNoZone && (!exists(command.zone) || !graph_.loadable(command.zone))) {
         refuse({ErrorCode::kNotFound});
       } else if (!state_.lost) {
         refuse({ErrorCode::kCancelled});
@@ -267,7 +269,9 @@ void Cycle::follow_zones(ZoneId before) noexcept {
     emit(EventKind::kZoneEntered, state_.zone);
     if (before != kNoZone && state_.zone != kNoZone) {
       ++state_.zone_switches;
-      if (!memory_.resident(state_.zone)) emit(EventKind::kNotKeepingUp, state_.zone);
+      if (graph_.loadable(state_.zone) && !memory_.resident(state_.zone)) {
+        emit(EventKind::kNotKeepingUp, state_.zone);
+      }
     }
   }
   preload_.update(state_.pose, tracker_.pose_zone());
@@ -277,11 +281,13 @@ void Cycle::Wanted::add(ZoneId zone) noexcept {
   const auto end = zones.begin() + count;
   if (zone == kNoZone || count == zones.size() || std::find(zones.begin(), end, zone) != end)
     return;
+  if (!graph->loadable(zone)) return;
   zones[count++] = zone;
 }
 
 Cycle::Wanted Cycle::list_wanted() const noexcept {
   Wanted wanted;
+  wanted.graph = &graph_;
   wanted.add(tracker_.zone());
   wanted.add(tracker_.pose_zone());
   if (!state_.pose.trusted) {

@@ -56,6 +56,9 @@ struct CycleParts {
 struct MapOffer {
   std::uint32_t map = 0;  // 0: none
   ErrorCode fault = ErrorCode::kOk;
+  // Zones that both maps have with the same pack stay resident; false as in recordings of versions
+  // that did not keep them.
+  bool keeps = false;
 };
 
 // All that a cycle decides on besides the settings and the map; this is what is recorded. Frames
@@ -150,6 +153,7 @@ class Cycle {
     std::size_t count = 0;
     std::size_t urgent = 0;
     std::size_t needed = 0;
+    const ZoneGraph* graph = nullptr;
     void add(ZoneId zone) noexcept;
   };
   Wanted list_wanted() const noexcept;

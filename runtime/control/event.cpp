@@ -77,6 +77,8 @@ const char* to_string(EventKind kind) noexcept {
       return "turn_asked";
     case EventKind::kPoseFound:
       return "pose_found";
+    case EventKind::kZoneKept:
+      return "zone_kept";
   }
   ZP_REQUIRE(false);
   return "";

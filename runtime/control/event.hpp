@@ -45,6 +45,7 @@ enum class EventKind : std::uint8_t {
   kZoneSought,  // the zone is to be loaded and searched for the robot
   kTurnAsked,   // the robot should turn on the spot: what was seen fits several places, or none
   kPoseFound,   // the pose is trusted again
+  kZoneKept,    // resident in the map before and, unchanged, in this one: not loaded again
 };
 
 // The word for it in the log ("zone_entered").

@@ -178,6 +178,20 @@ void ZoneKeeper::take_over(ZoneId zone, const SlotChain& slots) noexcept {
   emit(EventKind::kLoadDone, zone);
 }
 
+SlotChain ZoneKeeper::hand_over(ZoneId zone) noexcept {
+  const auto slots = memory_.hand_over(zone);
+  ZP_REQUIRE(slots.ok());
+  if (directory_ != nullptr) directory_->withdraw(zone);
+  return *slots;
+}
+
+void ZoneKeeper::adopt(ZoneId zone, const SlotChain& slots) noexcept {
+  const auto adopted = memory_.adopt(zone, needs_[zone], slots);
+  ZP_REQUIRE(adopted.ok());
+  if (directory_ != nullptr) directory_->publish(zone, memory_.generation(zone), slots);
+  emit(EventKind::kZoneKept, zone);
+}
+
 void ZoneKeeper::cancel_load() noexcept {
   if (!memory_.cancel(loading_)) return;
   loader_.cancel();

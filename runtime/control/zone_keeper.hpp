@@ -70,6 +70,11 @@ class ZoneKeeper {
   // Before the first keep().
   void take_over(ZoneId zone, const SlotChain& slots) noexcept;
 
+  // Gives a resident zone to another map's keeper, which adopts it: nothing is read again. Both
+  // between two cycles; the zone's slots are in no keeper's hands until then.
+  SlotChain hand_over(ZoneId zone) noexcept;
+  void adopt(ZoneId zone, const SlotChain& slots) noexcept;
+
   // A wanted zone did not fit in the last cycle.
   bool blocked() const noexcept { return blocked_ != kNoZone; }
 

@@ -88,6 +88,7 @@ void ControlLoop::step(std::uint64_t cycle, std::int64_t began_ns) noexcept {
   MapInUse* const next = offered_.exchange(nullptr, std::memory_order_acq_rel);
   if (next != nullptr) {
     input.offer.map = next->number;
+    input.offer.keeps = true;
   } else {
     input.offer.fault = refused_.exchange(ErrorCode::kOk, std::memory_order_relaxed);
   }

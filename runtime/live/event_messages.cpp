@@ -123,6 +123,9 @@ EventMessages::Message EventMessages::message_of(const Event& event, const MapVe
       loads_.clear();
       return {"map changed: " + catalog.folder + " is in use, version " + to_hex(catalog.version),
               true};
+    case EventKind::kZoneKept:
+      return {"zone " + zone +
+              " is the same in the new map and stays in memory: " + size_of(event)};
     case EventKind::kMapRefused:
       return {"map not changed: " + reason + "; version " + to_hex(catalog.version) +
                   " stays in use" + remedy_of(reason),

@@ -85,6 +85,9 @@ Outcome<std::shared_ptr<MapVersion>> MapChange::make_next(const MapVersion& in_u
                        "last file, or build the map again",
                    error.code);
   }
+  if (auto chosen = catalog->choose_layers(ports_.settings.memory.layers); !chosen) {
+    return failure(path + ": " + chosen.error().message, chosen.error().code);
+  }
   const auto checked = check_next_version(in_use.catalog(), *catalog, ports_.settings.loading.read);
   if (!checked) return checked.error();
   const std::size_t zones = catalog->zones.size();

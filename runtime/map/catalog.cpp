@@ -2,7 +2,10 @@
 #include "runtime/map/catalog.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 
+#include "platform/base/nearest_word.hpp"
 #include "platform/storage.hpp"
 
 namespace zonepack {
@@ -10,6 +13,17 @@ namespace {
 
 std::string text_of(const flatbuffers::String* text) {
   return text == nullptr ? std::string() : text->str();
+}
+
+// Names that zones use, the first by name when there are more than an index can tell apart.
+std::vector<std::string> layers_of_zones(const fb::Manifest& manifest) {
+  std::set<std::string> names;
+  for (const fb::Zone* zone : *manifest.zones()) {
+    if (zone->layer() == nullptr || zone->layer()->size() == 0) continue;
+    names.insert(zone->layer()->str());
+    if (names.size() > CatalogZone::kNoLayer) names.erase(std::prev(names.end()));
+  }
+  return {names.begin(), names.end()};
 }
 
 }  // namespace
@@ -60,10 +74,17 @@ Result<Catalog> Catalog::read(ByteSpan file, const std::string& folder, PayloadM
   catalog.fixed_bytes = costs.fixed_bytes;
   catalog.reading_bytes = kManifestHeldTimes * file.size();
   catalog.zones.reserve(manifest.zones()->size());
+  catalog.layers = layers_of_zones(manifest);
   for (const fb::Zone* zone : *manifest.zones()) {
     CatalogZone& entry = catalog.zones.emplace_back();
     entry.name = zone->name()->str();
     entry.zone_type = text_of(zone->zone_type());
+    if (zone->layer() != nullptr) {
+      const auto layer = std::ranges::lower_bound(catalog.layers, zone->layer()->string_view());
+      if (layer != catalog.layers.end() && *layer == zone->layer()->string_view()) {
+        entry.layer = static_cast<std::uint8_t>(layer - catalog.layers.begin());
+      }
+    }
     entry.polygon = polygon_of(*zone);
     entry.signatures = zone->signatures();
     entry.slots = costs.zone_slots[catalog.zones.size() - 1];
@@ -99,6 +120,27 @@ MapCosts Catalog::costs() const {
     costs.neighbours.emplace_back(portal.zone_a, portal.zone_b);
   }
   return costs;
+}
+
+Outcome<void> Catalog::choose_layers(const std::vector<std::string>& names) {
+  if (names.empty()) return {};
+  for (const std::string& name : names) {
+    if (std::ranges::binary_search(layers, name)) continue;
+    return failure("memory.layers: no zone of the map " + folder + " is of layer " + name +
+                       (layers.empty() ? "; none has a layer: name them with zonepack build "
+                                         "--layer or zonepack update --layer"
+                                       : known_words_text(name, layers)),
+                   ErrorCode::kNotFound);
+  }
+  for (CatalogZone& zone : zones) {
+    if (zone.layer == CatalogZone::kNoLayer ||
+        std::ranges::find(names, layers[zone.layer]) != names.end()) {
+      continue;
+    }
+    zone.loadable = false;
+    zone.slots = zone.signatures = 0;
+  }
+  return {};
 }
 
 ZoneId Catalog::find(std::string_view name) const noexcept {

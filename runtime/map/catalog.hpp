@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/base/failure.hpp"
 #include "platform/base/result.hpp"
 #include "platform/storage.hpp"
 #include "runtime/pack_format/file/accounting.hpp"
@@ -28,6 +29,10 @@ struct CatalogZone {
   std::string pack;          // file name in the map's folder
   ByteCount pack_bytes = 0;  // of that file
   Digest32 pack_digest{};
+  std::uint8_t layer = kNoLayer;  // index into Catalog::layers
+  bool loadable = true;           // false: of a layer that was not chosen; it charges nothing
+
+  static constexpr std::uint8_t kNoLayer = 255;
 };
 
 struct CatalogPortal {
@@ -48,8 +53,9 @@ struct Catalog {
   PayloadMask payload = 0;  // what will be loaded
   std::vector<CatalogZone> zones;
   std::vector<CatalogPortal> portals;
-  ByteCount fixed_bytes = 0;    // charged besides slots (accounting.hpp)
-  ByteCount reading_bytes = 0;  // that reading the manifest takes, whether charged or not
+  std::vector<std::string> layers;  // of zones, sorted; at most kNoLayer, the first by name
+  ByteCount fixed_bytes = 0;        // charged besides slots (accounting.hpp)
+  ByteCount reading_bytes = 0;      // that reading the manifest takes, whether charged or not
 
   // What it takes to read this map and to hold its tables.
   ByteCount bytes_to_open() const noexcept {
@@ -65,6 +71,11 @@ struct Catalog {
   // The same from the manifest's bytes, which must be aligned to 8; the folder may be gone.
   static Result<Catalog> read(ByteSpan manifest, const std::string& folder, PayloadMask payload,
                               ByteCount most = kNoMost, std::string* why = nullptr);
+
+  // Leaves zones of other layers out of what is loaded and charged; they stay on the plan. Zones
+  // without a layer, and an empty choice, leave all as it is. The message names a layer that no
+  // zone has (kNotFound).
+  Outcome<void> choose_layers(const std::vector<std::string>& names);
 
   static constexpr std::size_t kMostDetectorBytes = 2048;
   static constexpr ByteCount kNoMost = std::numeric_limits<ByteCount>::max();

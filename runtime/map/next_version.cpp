@@ -38,6 +38,7 @@ Outcome<void> check_next_version(const Catalog& in_use, const Catalog& next, Rea
     return failure(next.folder + ": is the version that is in use", ErrorCode::kExists);
   }
   for (ZoneId zone = 0; zone < next.zones.size(); ++zone) {
+    if (!next.zones[zone].loadable) continue;
     if (auto checked = check_pack(next, zone, mode); !checked) return checked;
   }
   return {};
@@ -48,6 +49,7 @@ Outcome<void> check_claims(const Catalog& map, bool without_budget, ReadMode mod
   std::optional<ZoneId> largest;  // of those that nothing confirms
   Error fault;
   for (ZoneId zone = 0; zone < map.zones.size(); ++zone) {
+    if (!map.zones[zone].loadable) continue;
     const auto pack = open_pack(map, zone, mode);
     const std::uint32_t slots = map.zones[zone].slots;
     if (pack) {

@@ -94,15 +94,32 @@ Eviction Residency::evict_coldest() noexcept {
 }
 
 Eviction Residency::evict(ZoneId zone) noexcept {
+  ++counters_.zones_unloaded;
+  counters_.signatures_unloaded += records_[zone].need.signatures;
+  return take_out(zone);
+}
+
+Eviction Residency::take_out(ZoneId zone) noexcept {
   Record& record = records_[zone];
   take_off_list(zone);
   end_leases(zone);
   const Eviction eviction{zone, record.generation, record.need, record.slots};
-  ++counters_.zones_unloaded;
-  counters_.signatures_unloaded += record.need.signatures;
   resident_.remove(record.need);
   discharge(record);
   return eviction;
+}
+
+Result<SlotChain> Residency::hand_over(ZoneId zone) noexcept {
+  if (records_[zone].state != ZoneState::kResident) return ErrorCode::kNotFound;
+  return take_out(zone).slots;
+}
+
+Result<void> Residency::adopt(ZoneId zone, ZoneNeed need, const SlotChain& slots) noexcept {
+  if (const auto possible = check(zone, need, Purpose::kApproach); !possible) return possible;
+  if (!fits(need, free())) return {ErrorCode::kNoRoom, need.slots};
+  open(zone, need);
+  fill(records_[zone], zone, slots);
+  return {};
 }
 
 void Residency::open(ZoneId zone, ZoneNeed need) noexcept {
@@ -123,12 +140,17 @@ void Residency::discharge(Record& record) noexcept {
 void Residency::complete(ZoneId zone, std::uint32_t generation, SlotChain slots) noexcept {
   Record& record = records_[zone];
   ZP_REQUIRE(record.state == ZoneState::kFilling || record.state == ZoneState::kCancelling);
-  ZP_REQUIRE(record.generation == generation && record.need.slots == slots.count);
+  ZP_REQUIRE(record.generation == generation);
+  ++counters_.zones_loaded;
+  counters_.signatures_loaded += record.need.signatures;
+  fill(record, zone, slots);
+}
+
+void Residency::fill(Record& record, ZoneId zone, const SlotChain& slots) noexcept {
+  ZP_REQUIRE(record.need.slots == slots.count);
   record.slots = slots;
   record.state = ZoneState::kResident;
   resident_.add(record.need);
-  ++counters_.zones_loaded;
-  counters_.signatures_loaded += record.need.signatures;
   put_on_list(zone);
 }
 

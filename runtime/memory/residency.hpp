@@ -123,6 +123,17 @@ class Residency {
   // Evicts a resident zone, even a wanted one. kNotFound when it is not.
   Result<Eviction> drop(ZoneId zone) noexcept;
 
+  // Takes a resident zone out without counting it as unloaded: its slots go to another map's
+  // memory, by adopt(). kNotFound when it is not resident.
+  Result<SlotChain> hand_over(ZoneId zone) noexcept;
+  // Makes a zone resident that another map's memory handed over, as the most recently used, without
+  // counting it as loaded. The errors of admit(); nothing is evicted.
+  Result<void> adopt(ZoneId zone, ZoneNeed need, const SlotChain& slots) noexcept;
+
+  // The zone that would be evicted first; kNoZone when nothing may be. The next one in that order.
+  ZoneId coldest() const noexcept { return evictable_.coldest(); }
+  ZoneId warmer(ZoneId evictable) const noexcept { return evictable_.warmer(evictable); }
+
   // Continues another map's counters.
   void continue_counters(const ResidencyCounters& counters) noexcept { counters_ = counters; }
 
@@ -192,7 +203,9 @@ class Residency {
   Eviction evict_coldest() noexcept;
   Eviction evict(ZoneId zone) noexcept;
   void open(ZoneId zone, ZoneNeed need) noexcept;
+  void fill(Record& record, ZoneId zone, const SlotChain& slots) noexcept;
   void discharge(Record& record) noexcept;
+  Eviction take_out(ZoneId zone) noexcept;
   void put_on_list(ZoneId zone) noexcept;
   void take_off_list(ZoneId zone) noexcept;
   void end_leases(ZoneId zone) noexcept;

@@ -118,6 +118,7 @@ void RunMirror::on_event(const Event& event) {
   if (event.zone >= zones_.size()) return;
   switch (event.kind) {
     case EventKind::kLoadDone:
+    case EventKind::kZoneKept:
       zones_[event.zone] = {++clock_, event.generation};
       break;
     case EventKind::kEvicted:

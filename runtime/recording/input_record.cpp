@@ -189,6 +189,7 @@ bool is_known(std::uint8_t kind) {
     case RecordKind::kOffer:
     case RecordKind::kEdges:
     case RecordKind::kViews:
+    case RecordKind::kKeeps:
       return true;
   }
   return false;
@@ -220,6 +221,9 @@ bool read_record(RecordKind kind, ByteReader in, RecordedInput& into) {
       });
     case RecordKind::kViews:
       return read_views(in, into.corrections);
+    case RecordKind::kKeeps:
+      into.offer.keeps = true;
+      return into.offer.map != 0 && in.finished();
   }
   return false;
 }
@@ -240,6 +244,8 @@ void write_records(const CycleInput& input, ByteWriter& out) noexcept {
   write_record(RecordKind::kCommands, !input.commands.empty(), input, out, write_commands);
   const bool offered = input.offer.map != 0 || input.offer.fault != ErrorCode::kOk;
   write_record(RecordKind::kOffer, offered, input, out, write_offer);
+  write_record(RecordKind::kKeeps, input.offer.map != 0 && input.offer.keeps, input, out,
+               [](const CycleInput&, ByteWriter&) {});
   write_record(RecordKind::kEdges, !input.edges.empty(), input, out, write_edges);
 }
 

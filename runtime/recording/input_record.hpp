@@ -20,6 +20,7 @@ enum class RecordKind : std::uint8_t {
   kOffer = 5,
   kEdges = 6,
   kViews = 7,
+  kKeeps = 8,
 };
 // A reader may skip unknown records of this kind and above; any other unknown record is an input
 // that would be missing.

@@ -25,8 +25,18 @@ Result<void> PackFiller::fill(ZoneId zone, std::span<const SlotIndex> slots) {
 
 void PackFiller::use(const Catalog& catalog) {
   if (&catalog == catalog_) return;
+  // Zones with the same pack may be kept through a change of map.
+  std::vector<std::vector<ChunkRef>> chunks(catalog.zones.size());
+  for (ZoneId zone = 0; zone < catalog.zones.size(); ++zone) {
+    const ZoneId before = catalog_->find(catalog.zones[zone].name);
+    if (before == kNoZone ||
+        catalog_->zones[before].pack_digest != catalog.zones[zone].pack_digest) {
+      continue;
+    }
+    chunks[zone] = std::move(chunks_[before]);
+  }
   catalog_ = &catalog;
-  chunks_.assign(catalog.zones.size(), {});
+  chunks_ = std::move(chunks);
   noted_.assign(catalog.zones.size(), false);
 }
 

@@ -29,6 +29,7 @@ Outcome<Catalog> catalog_of(const RecordingReader& recording, const Settings& se
   if (!catalog) {
     return failure(which + "cannot be used: " + why, catalog.error().code);
   }
+  if (auto chosen = catalog->choose_layers(settings.memory.layers); !chosen) return chosen.error();
   return std::move(catalog).value();
 }
 
@@ -240,6 +241,9 @@ Outcome<RecordedRun> open_recorded_run(const RecordingPreface& preface) {
                     Catalog::kNoMost, &why);
   if (!catalog) {
     return failure("the recorded map cannot be used: " + why, catalog.error().code);
+  }
+  if (auto chosen = catalog->choose_layers(loaded.settings.memory.layers); !chosen) {
+    return chosen.error();
   }
   return RecordedRun{std::move(loaded.settings), std::move(catalog).value()};
 }

@@ -2,6 +2,7 @@
 #include "runtime/report/pack_report.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "platform/base/natural_order.hpp"
 #include "runtime/report/floor_plan.hpp"
@@ -34,11 +35,46 @@ std::string hint_of(const PackedZone& zone) {
   std::string text = zone.name;
   if (!zone.zone_type.empty()) text += " (" + zone.zone_type + ")";
   if (!zone.label.empty()) text += ", " + zone.label;
+  if (!zone.layer.empty()) text += ", layer " + zone.layer;
   return text + ": " + format_count(zone.signatures) + " signatures, " +
          bytes_text(zone.charged_bytes) + " charged, " + bytes_text(zone.stored_bytes) + " stored";
 }
 
+// Layers of zones in order of name; empty where no zone has one.
+std::vector<std::string> layers_of(const PackReport& map) {
+  std::set<std::string> names;
+  for (const PackedZone& zone : map.zones) {
+    if (!zone.layer.empty()) names.insert(zone.layer);
+  }
+  return {names.begin(), names.end()};
+}
+
+// One colour for each layer, in zones and in the dots of their signatures.
+FloorPlan plan_of_layers(const PackReport& map, const std::vector<std::string>& layers) {
+  constexpr double kPale = 0.4;
+  FloorPlan plan;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    plan.dots.push_back({.name = layers[i], .color = hue(i), .dots = {}});
+  }
+  plan.dots.push_back({.name = "no layer", .color = kOther, .dots = {}});
+  for (const PackedZone& zone : map.zones) {
+    const auto found = std::ranges::find(layers, zone.layer);
+    PlanDots& dots = plan.dots[static_cast<std::size_t>(found - layers.begin())];
+    plan.zones.push_back({.name = zone.name,
+                          .note = bytes_text(zone.charged_bytes),
+                          .hint = hint_of(zone),
+                          .polygon = zone.polygon,
+                          .fill = mix(kWhite, dots.color, kPale)});
+    for (const Point2 p : zone.signature_positions) dots.dots.push_back({p, 0, zone.name});
+  }
+  if (plan.dots.back().dots.empty()) plan.dots.pop_back();
+  plan.portals = map.portals;
+  plan.raster = map.ground;
+  return plan;
+}
+
 FloorPlan plan_of(const PackReport& map) {
+  if (const auto layers = layers_of(map); !layers.empty()) return plan_of_layers(map, layers);
   const ByteCount most = most_charged(map);
   FloorPlan plan;
   for (const PackedZone& zone : map.zones) {
@@ -114,9 +150,12 @@ Report make_pack_report(const PackReport& map) {
   const FloorPlan plan = plan_of(map);
   page.figures.push_back(
       {"Floor plan",
-       "The stronger the colour of a zone, the more bytes it takes while it is in memory. Dots are "
-       "signatures, where the camera stood; orange bars are portals, where the robot goes from "
-       "zone to zone." +
+       (plan.dots.empty()
+            ? "The stronger the colour of a zone, the more bytes it takes while it is in memory."
+            : "A colour stands for a layer, a part of the map that was recorded in its own "
+              "sessions.") +
+           std::string(" Dots are signatures, where the camera stood; orange bars are portals, "
+                       "where the robot goes from zone to zone.") +
            std::string(map.ground
                            ? " Walls and furniture are what the mapping robot saw, the veil what "
                              "it did not see."

@@ -16,6 +16,7 @@ namespace zonepack::report {
 
 struct PackedZone {
   std::string name, zone_type, label;
+  std::string layer;  // mapping pass; empty: none
   Polygon polygon;
   std::uint64_t signatures = 0;
   std::uint64_t features = 0;

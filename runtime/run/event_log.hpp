@@ -28,7 +28,7 @@ std::string event_json(const Event& event, std::string_view zone);
 //                       load_done, load_cancelled, load_given_up, load_failed, evicted, blocked,
 //                       unblocked, not_keeping_up, map_offered, map_changed, map_refused, docked,
 //                       undocked, hold_begun, hold_ended, zone_confirmed, marker_ignored, end,
-//                       pose_lost, zone_sought, turn_asked, pose_found
+//                       pose_lost, zone_sought, turn_asked, pose_found, zone_kept
 //                       (event.hpp says what each means)
 //   zone                its name                               where a zone is meant
 //   signatures          of the zone                            where a zone is meant

@@ -17,6 +17,12 @@ Outcome<std::vector<ZoneId>> find_pins(const Catalog& catalog,
       return failure("memory.pinned: the map " + catalog.folder + " has no zone " + name,
                      ErrorCode::kNotFound);
     }
+    if (!catalog.zones[zone].loadable) {
+      return failure("memory.pinned: zone " + name + " is of layer " +
+                         catalog.layers[catalog.zones[zone].layer] +
+                         ", which memory.layers leaves out; add it there, or pin less",
+                     ErrorCode::kNotFound);
+    }
     if (std::find(pinned.begin(), pinned.end(), zone) == pinned.end()) pinned.push_back(zone);
   }
   return pinned;

@@ -59,6 +59,9 @@ Outcome<RunInputs> read_run_inputs(const RunChoices& choices) {
       Catalog::open(folder, inputs.settings.memory.payload.mask,
                     budget.value_or(default_budget_limit()) + kFreeMapBytes, &why);
   if (!catalog) return map_failure(folder, catalog.error(), why, budget);
+  if (auto chosen = catalog->choose_layers(inputs.settings.memory.layers); !chosen) {
+    return chosen.error();
+  }
   inputs.catalog = std::move(catalog).value();
 
   if (!choices.truth.empty()) {

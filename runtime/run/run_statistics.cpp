@@ -51,6 +51,10 @@ void RunStatistics::change_map(const ZoneGraph& graph, std::span<const ZoneNeed>
     drawn_.push_back(same == drawn_names_.end() ? kNoZone
                                                 : static_cast<ZoneId>(same - drawn_names_.begin()));
   }
+  // Those that are kept are counted again, as the new map's.
+  for (ZoneId zone = 0; zone < held_.size(); ++zone) {
+    if (held_[zone] != Held::kNot) charged_.remove(needs_[zone]);
+  }
   graph_ = &graph;
   needs_ = needs;
   limits_ = limits;
@@ -91,6 +95,10 @@ void RunStatistics::on_event(const Event& event) noexcept {
     case EventKind::kLoadDone:
       held_[event.zone] = Held::kResident;
       break;
+    case EventKind::kZoneKept:
+      held_[event.zone] = Held::kResident;
+      charged_.add(needs_[event.zone]);
+      break;
     case EventKind::kLoadGivenUp:
     case EventKind::kLoadFailed:
     case EventKind::kEvicted:
@@ -111,6 +119,10 @@ void RunStatistics::keep_hold(const Event& event) {
       holds_.begin(zone, t_s);
       break;
     case EventKind::kLoadDone:
+      holds_.ready(zone, t_s);
+      break;
+    case EventKind::kZoneKept:
+      holds_.begin(zone, t_s);
       holds_.ready(zone, t_s);
       break;
     case EventKind::kLoadGivenUp:
@@ -181,6 +193,7 @@ void RunStatistics::watch_zone(const CycleRecord& cycle) {
     true_zone_ = kNoZone;
   }
   if (!first_resident_ && cycle.counters.zones_loaded > 0) first_resident_ = cycles_ - 1;
+  if (own != kNoZone && !graph_->loadable(own)) own = kNoZone;
   localised_ = localised_ || (own != kNoZone && held_[own] == Held::kResident);
   absent_ = first_resident_ && own != kNoZone && held_[own] != Held::kResident;
   absent_cycles_ += absent_;

@@ -19,8 +19,8 @@ constexpr std::size_t kMostChanges = 1000;
 constexpr std::size_t kMostRouteZones = 128;
 constexpr std::size_t kMostOutlinePoints = 128;  // 1 KiB: fits after a full page
 
-static_assert(static_cast<int>(wire::EventKind::PoseFound) ==
-              static_cast<int>(EventKind::kPoseFound));
+static_assert(static_cast<int>(wire::EventKind::ZoneKept) ==
+              static_cast<int>(EventKind::kZoneKept));
 static_assert(static_cast<int>(wire::ZoneState::Resident) ==
               static_cast<int>(ZoneState::kResident));
 

@@ -37,6 +37,7 @@ void ZoneTable::take(const Event& event) noexcept {
       if (is_filling(row.state)) becomes(ZoneState::kCancelling);
       return;
     case EventKind::kLoadDone:
+    case EventKind::kZoneKept:
       return becomes(ZoneState::kResident);
     case EventKind::kLoadGivenUp:
     case EventKind::kLoadFailed:

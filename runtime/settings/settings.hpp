@@ -36,6 +36,7 @@ struct MemorySettings {
   std::uint64_t max_signatures = 0;  // 0: no such limit
   PayloadChoice payload;
   std::vector<std::string> pinned;  // names of zones that are never evicted
+  std::vector<std::string> layers;  // of which zones are loaded; empty: all
 };
 
 // How packs are read, and how fast loading is assumed to be, for preloading and simulated time.

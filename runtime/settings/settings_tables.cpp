@@ -23,6 +23,8 @@ const Fields<MemorySettings>& memory_fields() {
       {"payload", &S::payload, 0, 0, "",
        "what is loaded of every signature besides its core (pose and links)"},
       {"pinned", &S::pinned, 0, 0, "", "names of zones that are never unloaded"},
+      {"layers", &S::layers, 0, 0, "",
+       "names of layers (zonepack build --layer): zones of others are never loaded; []: all"},
   };
   return fields;
 }

@@ -17,6 +17,7 @@ namespace zonepack {
 struct GraphZone {
   std::string name;
   Polygon polygon;
+  bool loadable = true;  // false: of a layer that is not used; never loaded
 };
 
 struct GraphPortal {
@@ -46,6 +47,8 @@ class ZoneGraph {
   std::size_t zone_count() const noexcept { return zones_.size(); }
   const std::string& name(ZoneId zone) const noexcept { return zones_[zone].name; }
   const Polygon& polygon(ZoneId zone) const noexcept { return zones_[zone].polygon; }
+
+  bool loadable(ZoneId zone) const noexcept { return zones_[zone].loadable; }
 
   // The portals of a zone, in the order in which they were given.
   std::span<const Exit> exits(ZoneId zone) const noexcept;

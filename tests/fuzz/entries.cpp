@@ -200,6 +200,7 @@ bool read_block(ByteSpan bytes) {
 bool read_manifest(ByteSpan bytes) {
   Aligned file(sizeof(ManifestHeader) + bytes.size() + sizeof(ManifestTail));
   ManifestHeader header;
+  header.minor = kManifestMinor;
   header.size = static_cast<std::uint32_t>(bytes.size());
   std::memcpy(file.data(), &header, sizeof header);
   if (!bytes.empty()) std::memcpy(file.data() + sizeof header, bytes.data(), bytes.size());

@@ -92,6 +92,8 @@ ARROWS = {
     "packer/decode": "packer/record platform/base runtime/pack_format runtime/pack_format/file",
     "packer/build": "packer/encode packer/record packer/sources packer/zones platform platform/base platform/version"
                     " runtime/pack_format/file",
+    "packer/update": "packer/align packer/build packer/decode packer/encode packer/record packer/sources packer/zones"
+                     " platform/base runtime/pack_format/file",
     "packer/verify": "packer/decode packer/record packer/zones platform platform/base runtime/pack_format"
                      " runtime/pack_format/file",
     "packer/export": "packer/decode packer/record platform/base runtime/pack_format",
@@ -100,8 +102,8 @@ ARROWS = {
     "packer/inspect": "packer/console packer/decode packer/verify platform/base runtime/pack_format/file",
     "packer/suggest": "packer/zones runtime/pack_format",
     "packer/commands": "packer/build packer/console packer/decode packer/export packer/inspect packer/outline"
-                       " packer/preview packer/record packer/sources packer/suggest packer/verify packer/zones platform"
-                       " platform/base platform/command_line runtime/pack_format runtime/pack_format/file runtime/report",
+                       " packer/preview packer/record packer/sources packer/suggest packer/update packer/verify packer/zones"
+                       " platform platform/base platform/command_line runtime/pack_format runtime/pack_format/file runtime/report",
     "packer": "platform/command_line platform/signals.hpp packer/commands platform/version runtime/pack_format/file",
 }
 

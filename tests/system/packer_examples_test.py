@@ -12,7 +12,8 @@ import tempfile
 from pathlib import Path
 
 # Later commands need what the earlier ones write.
-ORDER = ["outline", "suggest-zones", "check-zones", "build", "plan", "inspect", "verify", "export", "report", "prune"]
+ORDER = ["outline", "suggest-zones", "check-zones", "build", "update", "diff", "log", "plan", "inspect", "verify", "export",
+         "report", "prune"]
 
 
 def help_of(zonepack, *words):
@@ -44,6 +45,8 @@ def main():
                 continue
             done = subprocess.run(["bash", "-c", f'PATH="{bin_folder}:$PATH"; {line}'], cwd=folder, capture_output=True,
                                   text=True)
+            if line.startswith("zonepack build ") and not (Path(folder) / "robot-map").exists():
+                shutil.copytree(Path(folder) / "map", Path(folder) / "robot-map")
             if done.returncode != 0:
                 faults.append(f"{line}: exit code {done.returncode}\n{done.stderr}")
     for fault in faults:

@@ -50,6 +50,10 @@ if(TARGET zonepack)
   add_test(NAME system/packer_hints
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/packer_hints_test.py $<TARGET_FILE:zonepack>
                    ${PROJECT_SOURCE_DIR})
+  add_test(NAME system/update
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/update_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/update PROPERTIES TIMEOUT 300)
   set_tests_properties(system/packer_examples system/packer_hints PROPERTIES TIMEOUT 300)
   add_test(NAME system/stella
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/stella_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}

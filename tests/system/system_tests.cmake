@@ -11,7 +11,10 @@ if(TARGET zonepack AND TARGET zoned)
     add_test(NAME system/map_change
              COMMAND ${CMAKE_CURRENT_LIST_DIR}/map_change_test.sh
                      ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
-    set_tests_properties(system/map_change PROPERTIES TIMEOUT 600)
+    add_test(NAME system/update_live
+             COMMAND ${CMAKE_CURRENT_LIST_DIR}/update_live_test.sh
+                     ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+    set_tests_properties(system/map_change system/update_live PROPERTIES TIMEOUT 600)
   endif()
   add_test(NAME system/can_utils
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/can_utils_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}

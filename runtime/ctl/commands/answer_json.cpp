@@ -14,7 +14,7 @@ const char* truth(bool value) { return value ? "true" : "false"; }
 
 std::string line_json(const wire::Event& from) {
   // A kind that only a newer zoned knows has no word here.
-  if (from.kind() > wire::EventKind::PoseFound) {
+  if (from.kind() > wire::EventKind::ZoneKept) {
     return "{\"cycle\":" + std::to_string(from.cycle()) +
            ",\"t_ns\":" + std::to_string(from.t_ns()) + ",\"event\":\"event_" +
            std::to_string(static_cast<int>(from.kind())) + "\"}\n";

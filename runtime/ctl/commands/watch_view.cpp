@@ -87,7 +87,7 @@ std::string budget_line(const wire::Status& status, int columns, bool color) {
 std::string event_line(const wire::Event& event) {
   std::string line = format("%12.3f s  ", static_cast<double>(event.t_ns()) / 1e9);
   // A kind of event that only a newer zoned knows is shown by its number.
-  line += event.kind() <= wire::EventKind::PoseFound
+  line += event.kind() <= wire::EventKind::ZoneKept
               ? to_string(static_cast<EventKind>(event.kind()))
               : format("event %d", static_cast<int>(event.kind()));
   if (event.zone_name() != nullptr) line += " " + event.zone_name()->str();

@@ -37,9 +37,9 @@ bool file_name_is_plain(std::string_view name) noexcept {
 // but for its tables: readers would hold them.
 class ManifestCheck {
  public:
-  ManifestCheck(const fb::Manifest& manifest, ByteCount body_bytes, bool known_minor,
+  ManifestCheck(const fb::Manifest& manifest, ByteCount body_bytes, std::uint16_t minor,
                 ManifestFault& fault) noexcept
-      : manifest_(manifest), body_bytes_(body_bytes), known_minor_(known_minor), fault_(fault) {}
+      : manifest_(manifest), body_bytes_(body_bytes), minor_(minor), fault_(fault) {}
 
   Result<void> run() {
     if (const auto whole = root(); !whole) return whole;
@@ -58,6 +58,8 @@ class ManifestCheck {
     if (manifest_.signature() != nullptr && manifest_.signature()->size() != kSignatureBytes) {
       return refuse("signature", "is not of 64 bytes");
     }
+    if (const auto sound = layers(); !sound) return sound;
+    if (const auto sound = changes(); !sound) return sound;
     return nothing_else();
   }
 
@@ -67,6 +69,9 @@ class ManifestCheck {
   static constexpr ByteCount kZoneTables = 512;
   static constexpr ByteCount kHoleTables = 64;
   static constexpr ByteCount kPortalTables = 128;
+  static constexpr ByteCount kLayerTables = 64;
+  static constexpr ByteCount kChangeTables = 128;
+  static constexpr ByteCount kNameOffset = 8;  // of a text in a list, and its padding
 
   void enter(Part part, std::uint32_t entry, std::string_view name) noexcept {
     fault_.part = part;
@@ -279,13 +284,76 @@ class ManifestCheck {
     return {};
   }
 
+  Result<void> layers() noexcept {
+    if (manifest_.layers() == nullptr) return {};
+    if (minor_ < kManifestMinorOfLayers) return refuse("layers", "are not of minor version 0");
+    const auto& layers = *manifest_.layers();
+    if (layers.size() > kMaxLayers) return refuse("layers", "are more than 64");
+    if (!holds(bytes_of(&layers, sizeof(std::uint32_t)))) return shared("layers");
+    std::string_view previous;
+    for (const fb::Layer* layer : layers) {
+      if (const auto plain = text("layers", layer->name()); !plain) return plain;
+      const std::string_view name = view_of(layer->name());
+      if (name_fault(name)) return refuse("layers", "has a name that is not fit for one");
+      if (name <= previous) return refuse("layers", "are not sorted by name");
+      previous = name;
+      const auto& sessions = *layer->sessions();
+      if (!is_aligned(&sessions)) return refuse("layers", "is not aligned");
+      if (sessions.size() > kMaxSessionRanges) {
+        return refuse("layers", "has a layer of more than 4096 ranges of sessions");
+      }
+      if (!holds(bytes_of(&sessions, sizeof(fb::SessionRange)))) return shared("layers");
+      const fb::SessionRange* before = nullptr;
+      for (const fb::SessionRange* range : sessions) {
+        if (range->first() > range->last() ||
+            (before != nullptr && range->first() <= before->last())) {
+          return refuse("layers", "has sessions that are not ascending");
+        }
+        before = range;
+      }
+      tables_ += kLayerTables;
+    }
+    return {};
+  }
+
+  Result<void> names(const flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>* list) {
+    if (list == nullptr) return {};
+    if (!holds(bytes_of(list, sizeof(std::uint32_t)))) return shared("changes");
+    for (const flatbuffers::String* name : *list) {
+      if (const auto plain = text("changes", name); !plain) return plain;
+      if (name_fault(view_of(name))) return refuse("changes", "names what is no zone's name");
+      tables_ += kNameOffset;
+    }
+    return {};
+  }
+
+  Result<void> changes() noexcept {
+    if (manifest_.changes() == nullptr) return {};
+    if (minor_ < kManifestMinorOfLayers) return refuse("changes", "are not of minor version 0");
+    const auto& changes = *manifest_.changes();
+    if (changes.size() > kMaxChanges) return refuse("changes", "are more than 1024");
+    if (!holds(bytes_of(&changes, sizeof(std::uint32_t)))) return shared("changes");
+    for (const fb::Change* change : changes) {
+      if (change->parent()->size() != sizeof(Digest32)) {
+        return refuse("changes", "has a parent that is not of 32 bytes");
+      }
+      if (!holds(bytes_of(change->parent(), 1))) return shared("changes");
+      if (const auto plain = text("changes", change->what()); !plain) return plain;
+      for (const auto* list : {change->added(), change->removed(), change->changed()}) {
+        if (const auto plain = names(list); !plain) return plain;
+      }
+      tables_ += kChangeTables;
+    }
+    return {};
+  }
+
   // A minor version that is not known may hold more.
   Result<void> nothing_else() noexcept {
     const ByteCount portals = manifest_.portals() == nullptr ? 0 : manifest_.portals()->size();
     const ByteCount most = held_ + tables_ + kRootTables + manifest_.zones()->size() * kZoneTables +
                            portals * kPortalTables +
                            bytes_of(manifest_.edges(), sizeof(fb::ZoneEdge));
-    if (!known_minor_ || body_bytes_ <= most) return {};
+    if (minor_ > kManifestMinor || body_bytes_ <= most) return {};
     return refuse("",
                   "the file has more bytes than its zones, portals and texts take: others "
                   "stand behind or between them",
@@ -294,10 +362,10 @@ class ManifestCheck {
 
   const fb::Manifest& manifest_;
   ByteCount body_bytes_;
-  bool known_minor_;
+  std::uint16_t minor_;
   ManifestFault& fault_;
   ByteCount held_ = 0;    // bytes of the pieces referred to so far
-  ByteCount tables_ = 0;  // of holes
+  ByteCount tables_ = 0;  // of holes, layers and changes
   unsigned kinds_ = 0;    // of payload, besides the core
 };
 
@@ -331,7 +399,7 @@ Result<const fb::Manifest*> check_manifest(ByteSpan file, ManifestFault* fault) 
   if (!fb::VerifyManifestBuffer(verifier)) return ErrorCode::kBadStructure;
   const fb::Manifest& manifest = *fb::GetManifest(body.data());
   if (manifest.slot_bytes() != kSlotBytes) return {ErrorCode::kMismatch, manifest.slot_bytes()};
-  ManifestCheck check(manifest, body.size(), header.minor <= kManifestMinor, found);
+  ManifestCheck check(manifest, body.size(), header.minor, found);
   if (const auto sound = check.run(); !sound) return sound.error();
   return &manifest;
 }

@@ -20,7 +20,13 @@ namespace zonepack {
 
 inline constexpr std::string_view kManifestName = "manifest.zpm";
 inline constexpr std::uint16_t kManifestMajor = 1;
-inline constexpr std::uint16_t kManifestMinor = 0;
+// What a reader knows. A manifest without layers and changes is of minor version 0, byte for byte
+// what it was before there were any.
+inline constexpr std::uint16_t kManifestMinor = 1;
+inline constexpr std::uint16_t kManifestMinorOfLayers = 1;
+inline constexpr std::uint32_t kMaxLayers = 64;
+inline constexpr std::uint32_t kMaxSessionRanges = 4096;  // of one layer
+inline constexpr std::uint32_t kMaxChanges = 1024;
 inline constexpr std::uint32_t kSignatureBytes = 64;  // Ed25519
 
 inline constexpr Magic kManifestMagic = {0x89, 'Z', 'P', 'M', '\r', '\n', 0x1A, '\n'};
@@ -29,7 +35,7 @@ inline constexpr Magic kManifestEndMagic = {'\n', 0x1A, '\n', '\r', 'M', 'P', 'Z
 struct ManifestHeader {
   Magic magic = kManifestMagic;
   std::uint16_t major = kManifestMajor;
-  std::uint16_t minor = kManifestMinor;
+  std::uint16_t minor = 0;
   std::uint32_t size = 0;  // of the FlatBuffer that follows
 };
 static_assert(sizeof(ManifestHeader) == 16);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -215,6 +216,85 @@ TEST_F(MapChange, ChangesAtOnceWhereNoPoseIsKnown) {
   stand(2);
   EXPECT_TRUE(told("map_changed"));
   EXPECT_EQ(&maps.map(), &new_world.in_use);
+}
+
+// Both maps with zones a, b and c; packs differ where the digests do.
+class MapUpdateWhileDriving : public MapChange {
+ protected:
+  void name_zones(World& world, std::array<std::uint8_t, 3> packs) {
+    const char* const names[] = {"a", "b", "c"};
+    for (std::size_t i = 0; i < 3; ++i) {
+      CatalogZone& zone = world.catalog.zones.emplace_back();
+      zone.name = names[i];
+      zone.slots = 4;
+      zone.signatures = 10;
+      zone.pack_digest[0] = packs[i];
+    }
+  }
+  // The recorded offer, as the robot makes it, in the next cycle.
+  void take_update(bool keeps = true) {
+    new_world.in_use.number = 2;
+    ASSERT_TRUE(maps.offer(new_world.in_use));
+    now_ns += 10'000'000;
+    loader.advance_to(now_ns);
+    maps.run({.now_ns = now_ns, .offer = {.map = 2, .keeps = keeps}});
+    stand(30);
+    ASSERT_EQ(&maps.map(), &new_world.in_use);
+  }
+  std::size_t count(const std::string& word) const {
+    return static_cast<std::size_t>(std::count(words.begin(), words.end(), word));
+  }
+};
+
+TEST_F(MapUpdateWhileDriving, KeepsWhatIsTheSameAndLoadsNothingAgain) {
+  name_zones(old_world, {1, 2, 3});
+  name_zones(new_world, {1, 2, 9});
+  stand_in_a();
+  const std::uint64_t loaded = old_world.memory.counters().zones_loaded;
+  take_update();
+  EXPECT_TRUE(new_world.memory.resident(0) && new_world.memory.resident(1));
+  EXPECT_TRUE(readable[0] && readable[1]);
+  EXPECT_TRUE(maps.map().cycle.state().map_ready);
+  EXPECT_EQ(new_world.memory.counters().zones_loaded, loaded);
+  EXPECT_EQ(new_world.memory.counters().zones_unloaded, 0u);
+  EXPECT_EQ(count("load_started a") + count("load_started b") + count("evicted b"), 0u);
+  EXPECT_EQ(count("zone_kept a"), 1u);
+  EXPECT_EQ(count("zone_kept b"), 1u);
+  EXPECT_EQ(old_world.memory.used_sum(), NeedSum{});
+}
+
+TEST_F(MapUpdateWhileDriving, LoadsTheRobotsZoneWhenItChangedAndKeepsTheOther) {
+  // Budget 1000: tables 100 twice, a twice and b: 200 + 3 x 400 = 1400. So b has to go.
+  name_zones(old_world, {1, 2, 3});
+  name_zones(new_world, {8, 2, 3});
+  stand_in_a();
+  take_update();
+  EXPECT_EQ(count("zone_kept a"), 0u);
+  EXPECT_EQ(count("zone_kept b"), 0u);
+  EXPECT_EQ(count("evicted b"), 1u);
+  EXPECT_EQ(count("load_done a"), 1u);
+  EXPECT_TRUE(maps.map().cycle.state().map_ready);
+}
+
+TEST_F(MapUpdateWhileDriving, KeepsTheRobotsZoneWhenItsNeighbourChanged) {
+  name_zones(old_world, {1, 2, 3});
+  name_zones(new_world, {1, 7, 3});
+  stand_in_a();
+  take_update();
+  EXPECT_EQ(count("zone_kept a"), 1u);
+  EXPECT_EQ(count("evicted b"), 1u);  // another pack
+  EXPECT_EQ(count("load_started a"), 0u);
+  EXPECT_TRUE(new_world.memory.resident(0));
+}
+
+TEST_F(MapUpdateWhileDriving, LoadsEverythingAgainWhereARecordingSaysSo) {
+  name_zones(old_world, {1, 2, 3});
+  name_zones(new_world, {1, 2, 3});
+  stand_in_a();
+  take_update(false);
+  EXPECT_EQ(count("zone_kept a") + count("zone_kept b"), 0u);
+  EXPECT_EQ(count("evicted b"), 1u);
+  EXPECT_EQ(count("load_done a"), 1u);
 }
 
 }  // namespace

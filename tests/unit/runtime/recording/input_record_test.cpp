@@ -239,5 +239,19 @@ TEST(InputRecord, CarriesTheMapOnOfferOrWhyThereIsNone) {
   }
 }
 
+TEST(InputRecord, SaysWhetherZonesAreKeptThroughAChangeOfMap) {
+  for (const bool keeps : {false, true}) {
+    CycleInput input;
+    input.offer = {.map = 2, .keeps = keeps};
+    std::vector<std::byte> bytes(64);
+    ByteWriter out(bytes);
+    write_records(input, out);
+    RecordedInput back;
+    ASSERT_TRUE(read_records(out.written(), back));
+    EXPECT_EQ(back.offer.keeps, keeps);
+    EXPECT_EQ(back.offer.map, 2u);
+  }
+}
+
 }  // namespace
 }  // namespace zonepack

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace zonepack::packer {
+
+// zonepack diff
+void add_diff_command(CLI::App& app, int& exit_code);
+
+}  // namespace zonepack::packer

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "packer/decode/map_reader.hpp"
+#include "packer/record/record.hpp"
+
+namespace zonepack::packer {
+
+// What a map holds of each signature besides its payloads, read from the core of every pack.
+//
+// Memory: some 150 bytes a signature and 4 bytes a link.
+class HeldSignatures {
+ public:
+  struct Signature {
+    ZoneId zone = kNoZone;
+    std::int32_t session = 0;  // map_id
+    double stamp = 0;
+    std::optional<Transform> odometry_pose;
+    std::vector<std::int32_t> links;  // to signatures and, negative, to landmarks
+  };
+
+  explicit HeldSignatures(const MapReader& map);
+
+  const std::map<std::int32_t, Signature>& by_id() const noexcept { return by_id_; }
+  const Signature* find(std::int32_t id) const noexcept;
+  // Signatures of each session.
+  const std::map<std::int32_t, std::size_t>& sessions() const noexcept { return sessions_; }
+
+ private:
+  std::map<std::int32_t, Signature> by_id_;
+  std::map<std::int32_t, std::size_t> sessions_;
+};
+
+}  // namespace zonepack::packer
