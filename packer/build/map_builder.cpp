@@ -10,19 +10,16 @@
 #include <stdexcept>
 #include <thread>
 
-#include "packer/build/detector_text.hpp"
 #include "packer/build/manifest_writer.hpp"
 #include "packer/build/map_folder.hpp"
 #include "packer/build/repeated_features.hpp"
 #include "packer/encode/packable.hpp"
-#include "packer/sources/rtabmap_database.hpp"
+#include "packer/sources/open_source.hpp"
 #include "platform/base/file_kind.hpp"
 #include "platform/base/require.hpp"
 
 namespace zonepack::packer {
 namespace {
-
-constexpr std::uint64_t kFeatureRowBytes = 72;  // size of a row of the Feature table
 
 PayloadSet payload_set(PayloadMask mask) {
   const auto has = [mask](fb::PayloadKind kind) { return (mask & mask_of(kind)) != 0; };
@@ -45,7 +42,7 @@ std::vector<Damage> sorted(std::vector<Damage> damages) {
 class MapBuilder {
  public:
   MapBuilder(const BuildOptions& options, Progress& progress)
-      : options_(options), progress_(progress), database_(options.database) {
+      : options_(options), progress_(progress), source_(open_source(options.source)) {
     zones_ = load_zone_file(options.zones.string(), options.snap_m);
   }
 
@@ -63,7 +60,7 @@ class MapBuilder {
   void outline();
   void place();
   void pack(MapFolder& folder, const ZonePlan& plan, const std::vector<std::uint32_t>& zone_of);
-  void pack_zone(RtabmapDatabase& database, MapFolder& folder, std::size_t zone);
+  void pack_zone(MapSource& source, MapFolder& folder, std::size_t zone);
   void split(MapFolder& folder);
   void finish(MapFolder& folder);
   void refuse_damaged() const;
@@ -73,7 +70,7 @@ class MapBuilder {
 
   const BuildOptions& options_;
   Progress& progress_;
-  RtabmapDatabase database_;
+  std::unique_ptr<MapSource> source_;
   ZoneFile zones_;
   BuildSummary summary_;
 
@@ -91,22 +88,23 @@ class MapBuilder {
 };
 
 void MapBuilder::outline() {
-  const MapOutline& outline = database_.outline();
+  const MapOutline& outline = source_->outline();
   summary_.schema_version = outline.schema_version;
   summary_.deleted = outline.deleted_nodes;
   summary_.unlinked_by_session = outline.unlinked_by_session;
   summary_.warnings = outline.warnings;
+  summary_.notes = outline.notes;
   for (const Finding& finding : zones_.findings.warnings) {
     summary_.warnings.push_back(to_string(finding, options_.zones.string()));
   }
-  summary_.feature_row_bytes = outline.feature_count * kFeatureRowBytes;
+  summary_.feature_row_bytes = outline.feature_bytes;
   summary_.source_bytes = summary_.feature_row_bytes + outline.scan_bytes + outline.grid_bytes;
-  require_signatures(outline, options_.database.string());
+  require_signatures(outline, options_.source.name());
   damages_ = outline.damages;
   for (const Damage& damage : damages_) skipped_.insert(damage.signature);
   if (options_.unlinked == UnlinkedPolicy::kError && outline.unlinked() > 0) {
     throw std::runtime_error(
-        options_.database.string() + ": " + std::to_string(outline.unlinked()) +
+        options_.source.name() + ": " + std::to_string(outline.unlinked()) +
         (outline.unlinked() == 1 ? " signature has" : " signatures have") +
         " no optimised pose; open the database with RTAB-Map and close it cleanly, "
         "or pack with --unlinked odometry or drop");
@@ -115,11 +113,11 @@ void MapBuilder::outline() {
 
 void MapBuilder::place() {
   std::set<std::int32_t> placed_sessions;
-  for (const NodeOutline& node : database_.outline().nodes) {
+  for (const NodeOutline& node : source_->outline().nodes) {
     if (node.pose) placed_sessions.insert(node.map_id);
   }
   const bool all = options_.unlinked == UnlinkedPolicy::kOdometryAll || placed_sessions.empty();
-  for (const NodeOutline& node : database_.outline().nodes) {
+  for (const NodeOutline& node : source_->outline().nodes) {
     if (node.damaged) continue;
     const bool connected = all || placed_sessions.contains(node.map_id);
     const bool by_odometry = options_.unlinked == UnlinkedPolicy::kOdometry ||
@@ -139,7 +137,7 @@ void MapBuilder::place() {
   }
   for (const auto& [session, count] : summary_.unconnected_by_session) {
     summary_.warnings.push_back(
-        options_.database.string() + ": session " + std::to_string(session) + " with its " +
+        options_.source.name() + ": session " + std::to_string(session) + " with its " +
         std::to_string(count) + (count == 1 ? " signature" : " signatures") +
         " is connected to no other, so nothing says where it is; it is left out. Keep it with "
         "--unlinked odometry-all");
@@ -181,8 +179,8 @@ void MapBuilder::pack(MapFolder& folder, const ZonePlan& plan,
   std::exception_ptr failure;
   const auto work = [&] {
     try {
-      RtabmapDatabase database = database_.reopen();
-      for (std::size_t i; (i = next++) < order.size();) pack_zone(database, folder, order[i]);
+      const std::unique_ptr<MapSource> source = source_->reopen();
+      for (std::size_t i; (i = next++) < order.size();) pack_zone(*source, folder, order[i]);
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!failure) failure = std::current_exception();
@@ -194,13 +192,13 @@ void MapBuilder::pack(MapFolder& folder, const ZonePlan& plan,
   work();
   threads.clear();
   if (failure) std::rethrow_exception(failure);
-  database_.require_unchanged();
+  source_->require_unchanged();
   refuse_damaged();
   progress_.finish(std::to_string(total) + " signatures of " + std::to_string(order.size()) +
                    " zones on " + std::to_string(jobs) + (jobs == 1 ? " core" : " cores"));
 }
 
-void MapBuilder::pack_zone(RtabmapDatabase& database, MapFolder& folder, std::size_t zone) {
+void MapBuilder::pack_zone(MapSource& source, MapFolder& folder, std::size_t zone) {
   PackWriter writer(folder.path(), plan_.zones[zone].name);
   SignatureRecord record;
   const PayloadSet wanted = payload_set(options_.payload);
@@ -208,7 +206,7 @@ void MapBuilder::pack_zone(RtabmapDatabase& database, MapFolder& folder, std::si
     const SignaturePlace& place = places_[member];
     progress_.advance();
     try {
-      database.read(place.id, wanted, record);
+      source.read(place.id, wanted, record);
     } catch (const DamagedSignature& damaged) {
       const std::lock_guard lock(mutex_);
       if (skipped_.insert(place.id).second) damages_.push_back(damaged.damage());
@@ -233,7 +231,7 @@ void MapBuilder::refuse_damaged() const {
   if (damages_.empty() || options_.damaged == DamagedPolicy::kSkip) return;
   constexpr std::size_t kShown = 20;
   const std::vector<Damage> shown = sorted(damages_);
-  std::string text = options_.database.string() + ": " + std::to_string(shown.size()) +
+  std::string text = options_.source.name() + ": " + std::to_string(shown.size()) +
                      (shown.size() == 1 ? " signature" : " signatures") +
                      " damaged or beyond what a pack holds; repair the database, or leave them out "
                      "with --damaged skip";
@@ -313,8 +311,8 @@ std::vector<fb::ZoneEdge> MapBuilder::edges() const {
 
 // Every version of a map begins with the same first signature, so it names the lineage.
 Digest16 MapBuilder::lineage() const {
-  const NodeOutline& first = database_.outline().nodes.front();
-  std::string text = "rtabmap " + std::to_string(first.id) + " ";
+  const NodeOutline& first = source_->outline().nodes.front();
+  std::string text = source_->outline().kind + " " + std::to_string(first.id) + " ";
   text.append(reinterpret_cast<const char*>(&first.stamp), sizeof first.stamp);
   return blake2b_16(std::as_bytes(std::span(text)));
 }
@@ -323,10 +321,10 @@ void MapBuilder::finish(MapFolder& folder) {
   // In a whole database a robot that stands still in a simulation may see the same image twice.
   if (const auto repeated = repeated_.text(); repeated && !damages_.empty()) {
     summary_.warnings.push_back(
-        options_.database.string() + ": " + *repeated +
+        options_.source.name() + ": " + *repeated +
         ": in a damaged database one page may stand in the place of another, and then at most one "
         "of them is right; check the file with: sqlite3 " +
-        shell_quoted(options_.database.string()) + " 'PRAGMA integrity_check'");
+        shell_quoted(options_.source.name()) + " 'PRAGMA integrity_check'");
   }
   ManifestContent content;
   content.plan = &plan_;
@@ -340,7 +338,7 @@ void MapBuilder::finish(MapFolder& folder) {
   content.edges = edges();
   content.lineage = lineage();
   content.payload = options_.payload;
-  content.source_kind = "rtabmap";
+  content.source_kind = source_->outline().kind;
   content.source_version = summary_.schema_version;
   static constexpr const char* kOrphans[] = {"nearest", "drop", "error"};
   static constexpr const char* kUnlinked[] = {"odometry", "drop", "error", "odometry-all"};
@@ -348,8 +346,8 @@ void MapBuilder::finish(MapFolder& folder) {
                     " unlinked=" + kUnlinked[static_cast<std::size_t>(options_.unlinked)] +
                     " max_zone_bytes=" + std::to_string(options_.max_zone_bytes) +
                     " snap=" + number_text(options_.snap_m);
-  content.detector = detector_text(database_.outline());
-  content.source_feature_count = database_.outline().feature_count;
+  content.detector = options_.detector.empty() ? source_->outline().detector : options_.detector;
+  content.source_feature_count = source_->outline().feature_count;
   content.source_bytes = summary_.source_bytes;
   const Bytes manifest = manifest_bytes(content);
   summary_.unchanged = folder.commit(manifest);

@@ -10,7 +10,7 @@
 
 #include "packer/build/progress.hpp"
 #include "packer/encode/pack_writer.hpp"
-#include "packer/sources/damage.hpp"
+#include "packer/record/source_kind.hpp"
 #include "packer/zones/orphans.hpp"
 #include "packer/zones/partition.hpp"
 #include "packer/zones/split.hpp"
@@ -26,7 +26,7 @@ enum class UnlinkedPolicy : std::uint8_t { kOdometry, kDrop, kError, kOdometryAl
 enum class DamagedPolicy : std::uint8_t { kSkip, kError };
 
 struct BuildOptions {
-  std::filesystem::path database;
+  SourceOptions source;
   std::filesystem::path zones;
   std::filesystem::path out;
   PayloadMask payload = kEveryPayload;
@@ -35,7 +35,8 @@ struct BuildOptions {
   double snap_m = kDefaultSnap_m;
   UnlinkedPolicy unlinked = UnlinkedPolicy::kOdometry;
   DamagedPolicy damaged = DamagedPolicy::kError;
-  unsigned jobs = 0;  // 0: one per core
+  unsigned jobs = 0;     // 0: one per core
+  std::string detector;  // what found the features, where the source is wrong; empty: as it says
 };
 
 struct BuildSummary {
@@ -53,6 +54,7 @@ struct BuildSummary {
   std::vector<Damage> damages;  // of the signatures that were skipped
   std::vector<SplitZone> split;
   std::vector<std::string> warnings;  // complete sentences
+  std::vector<std::string> notes;     // how the source was read
   std::vector<std::string> zone_names;
   std::vector<PackSummary> packs;   // by zone
   ByteCount charged_bytes = 0;      // all zones, default payload: slots x slot size

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <iomanip>
 #include <iostream>
 #include <map>
@@ -13,6 +14,7 @@
 
 #include "packer/build/leftovers.hpp"
 #include "packer/build/map_builder.hpp"
+#include "packer/commands/source_options.hpp"
 #include "packer/console/command_line.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/words.hpp"
@@ -59,6 +61,7 @@ nlohmann::ordered_json to_json(const BuildSummary& s, const std::filesystem::pat
   json["smallest_budget_bytes"] = s.smallest.bytes;
   json["unchanged"] = s.unchanged;
   json["warnings"] = s.warnings;
+  json["notes"] = s.notes;
   json["signatures_per_zone"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < s.packs.size(); ++i) {
     json["signatures_per_zone"][s.zone_names[i]] = s.packs[i].signatures;
@@ -67,6 +70,7 @@ nlohmann::ordered_json to_json(const BuildSummary& s, const std::filesystem::pat
 }
 
 void print_trouble(const BuildSummary& s, const BuildOptions& options, std::ostream& out) {
+  for (const std::string& note : s.notes) out << note << "\n";
   for (const std::string& warning : s.warnings) out << "warning: " << warning << "\n";
   std::map<std::int32_t, std::size_t> unlinked_by_session = s.unlinked_by_session;
   std::size_t unconnected = 0;
@@ -175,9 +179,7 @@ void add_build_command(CLI::App& app, int& exit_code) {
   BuildOptions& options = arguments->options;
   CLI::App* const command =
       app.add_subcommand("build", "Pack a SLAM map database into one pack per zone and a manifest");
-  command->add_option("--db", options.database, "RTAB-Map database, schema 0.11 to 0.23; only read")
-      ->required()
-      ->type_name("DB");
+  add_source_options(*command, options.source, "the map to pack")->required();
   command->add_option("--zones", options.zones, "zone polygons and portals, GeoJSON in metres")
       ->required()
       ->type_name("ZONES.geojson");
@@ -210,6 +212,19 @@ void add_build_command(CLI::App& app, int& exit_code) {
       *command, "--damaged", options.damaged,
       {{"error", DamagedPolicy::kError}, {"skip", DamagedPolicy::kSkip}},
       "signatures that cannot be read whole: error (default) or skip");
+  command
+      ->add_option(
+          "--detector", options.detector,
+          "what found the features, where the map does not say it or says it wrongly: "
+          "RTAB-Map's number and settings, such as '8 Kp/MaxFeatures:400;GFTT/MinDistance:7'")
+      ->check([](const std::string& text) {
+        const bool fits =
+            !text.empty() && text.size() <= 1000 && text[0] >= '0' && text[0] <= '9' &&
+            std::ranges::all_of(text, [](unsigned char c) { return c >= 32 && c < 127; });
+        return fits ? std::string()
+                    : "'" + text + "' does not begin with RTAB-Map's number of a detector";
+      })
+      ->type_name("TEXT");
   command->add_option("--jobs", options.jobs, "threads; default one per core")
       ->check(CLI::Range(1, 256))
       ->type_name("N");

@@ -9,13 +9,14 @@
 #include <vector>
 
 #include "packer/commands/report.hpp"
+#include "packer/commands/source_options.hpp"
 #include "packer/console/command_line.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/text_table.hpp"
 #include "packer/console/words.hpp"
 #include "packer/outline/map_drawing.hpp"
 #include "packer/preview/zones_page.hpp"
-#include "packer/sources/rtabmap_database.hpp"
+#include "packer/sources/open_source.hpp"
 #include "packer/zones/orphans.hpp"
 #include "packer/zones/partition.hpp"
 #include "platform/command_line/command_line.hpp"
@@ -57,17 +58,17 @@ struct Source {
 };
 
 Source read_source(const CheckZonesOptions& options, const ZonePlan& plan) {
-  RtabmapDatabase database(*options.db);
-  require_signatures(database.outline(), options.db->string());
-  Source source{count_signatures(database.outline(), plan), {}};
+  const std::unique_ptr<MapSource> map = open_source(*options.source);
+  require_signatures(map->outline(), options.source->name());
+  Source source{count_signatures(map->outline(), plan), {}};
   if (options.out.empty()) return source;
   try {
-    source.ground = drawing_of(database);
+    source.ground = drawing_of(*map);
   } catch (const std::runtime_error& error) {
-    source.ground.warnings.push_back(options.db->string() + ": " + error.what() +
+    source.ground.warnings.push_back(options.source->name() + ": " + error.what() +
                                      "; no occupancy grid is drawn");
   }
-  database.require_unchanged();
+  map->require_unchanged();
   return source;
 }
 
@@ -226,7 +227,7 @@ int check_zones(const CheckZonesOptions& options, std::ostream& text, ordered_js
   const ZonePlan& plan = file.plan;
   Findings& findings = file.findings;
   std::optional<Source> source;
-  if (options.db && (!plan.zones.empty() || !options.out.empty())) {
+  if (options.source && (!plan.zones.empty() || !options.out.empty())) {
     source = read_source(options, plan);
   }
   const SignatureCounts* const counts = source && !plan.zones.empty() ? &source->counts : nullptr;
@@ -277,6 +278,7 @@ int check_zones(const CheckZonesOptions& options, std::ostream& text, ordered_js
 void add_check_zones_command(CLI::App& app, int& exit_code) {
   struct Arguments {
     CheckZonesOptions options;
+    SourceOptions source;
     JsonOutput json;
   };
   const auto arguments = std::make_shared<Arguments>();
@@ -284,8 +286,7 @@ void add_check_zones_command(CLI::App& app, int& exit_code) {
       "check-zones", "Report every fault of a zone file at once, and the signatures per zone");
   command->add_option("ZONES", arguments->options.zones, "GeoJSON of zones and portals, in metres")
       ->required();
-  command->add_option("--db", arguments->options.db, "RTAB-Map database: count signatures per zone")
-      ->type_name("DB");
+  add_source_options(*command, arguments->source, "count the signatures of this map per zone");
   command
       ->add_option("--snap", arguments->options.snap_m,
                    "how far a portal's ends may stand off the border, metres")
@@ -311,6 +312,7 @@ void add_check_zones_command(CLI::App& app, int& exit_code) {
                           "zonepack check-zones zones.geojson --db map.db --out preview.html",
                           "zonepack check-zones zones.geojson --db map.db --snap 0.2 --json -"});
   command->callback([arguments, &exit_code] {
+    if (!arguments->source.path.empty()) arguments->options.source = arguments->source;
     require_writable(arguments->options.out);
     arguments->json.require_writable();
     ordered_json json;

@@ -8,13 +8,14 @@
 #include <ostream>
 #include <string>
 
+#include "packer/record/source_kind.hpp"
 #include "packer/zones/zone_file.hpp"
 
 namespace zonepack::packer {
 
 struct CheckZonesOptions {
-  std::string zones;                        // GeoJSON
-  std::optional<std::filesystem::path> db;  // counts signatures when given
+  std::string zones;                    // GeoJSON
+  std::optional<SourceOptions> source;  // counts signatures when given
   double snap_m = kDefaultSnap_m;
   std::string out = {};  // a picture of the zones, .html, .svg or .png; empty: none
 };

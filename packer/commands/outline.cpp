@@ -9,12 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "packer/commands/source_options.hpp"
 #include "packer/console/command_line.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/words.hpp"
 #include "packer/outline/map_drawing.hpp"
 #include "packer/outline/paths.hpp"
-#include "packer/sources/rtabmap_database.hpp"
+#include "packer/sources/open_source.hpp"
 #include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
 #include "platform/command_line/command_line.hpp"
@@ -89,16 +90,16 @@ void print_next_step(const OutlineOptions& options, bool with_map, std::ostream&
          "  4. Export as GeoJSON in EPSG:3857 (not WGS 84: that would turn metres into degrees), "
          "then\n"
          "     zonepack check-zones zones.geojson --db "
-      << options.db.string() << "\n";
+      << options.source.name() << "\n";
 }
 
 }  // namespace
 
 void write_outline(const OutlineOptions& options, std::ostream& text, ordered_json& json) {
-  RtabmapDatabase database(options.db);
-  const MapOutline& outline = database.outline();
-  require_signatures(outline, options.db.string());
-  const MapDrawing plan = drawing_of(database);
+  const std::unique_ptr<MapSource> source = open_source(options.source);
+  const MapOutline& outline = source->outline();
+  require_signatures(outline, options.source.name());
+  const MapDrawing plan = drawing_of(*source);
   const std::vector<Path> paths = paths_of(outline);
   const std::size_t linked = outline.nodes.size() - outline.unlinked();
 
@@ -111,18 +112,18 @@ void write_outline(const OutlineOptions& options, std::ostream& text, ordered_js
   }
   files.emplace_back("signatures.geojson", signatures_geojson(outline));
   files.emplace_back("trajectories.geojson", trajectories_geojson(paths));
-  database.require_unchanged();
+  source->require_unchanged();
   write_together(options.out, files);
 
   std::vector<std::string> warnings = outline.warnings;
   warnings.insert(warnings.end(), plan.warnings.begin(), plan.warnings.end());
   if (!with_map) {
     warnings.push_back(
-        options.db.string() +
+        options.source.name() +
         ": no local grids and no map of its own: no map.pgm; draw along the trajectories");
   }
   if (outline.unlinked() > 0) {
-    warnings.push_back(options.db.string() + ": " + std::to_string(outline.unlinked()) + " of " +
+    warnings.push_back(options.source.name() + ": " + std::to_string(outline.unlinked()) + " of " +
                        std::to_string(outline.nodes.size()) +
                        " signatures have no optimised pose and are not drawn");
   }
@@ -154,9 +155,7 @@ void add_outline_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const command = app.add_subcommand(
       "outline", "Write a floor plan, signatures and trajectories for drawing zones (QGIS)");
-  command->add_option("--db", arguments->options.db, "RTAB-Map database")
-      ->type_name("DB")
-      ->required();
+  add_source_options(*command, arguments->options.source, "the map")->required();
   command->add_option("--out", arguments->options.out, "folder for the files")
       ->type_name("DIR")
       ->required();

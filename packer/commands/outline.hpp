@@ -6,10 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
+#include "packer/record/source_kind.hpp"
+
 namespace zonepack::packer {
 
 struct OutlineOptions {
-  std::filesystem::path db;
+  SourceOptions source;
   std::filesystem::path out;
 };
 

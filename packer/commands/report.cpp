@@ -10,11 +10,12 @@
 #include <stdexcept>
 #include <vector>
 
+#include "packer/commands/source_options.hpp"
 #include "packer/console/command_line.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/decode/map_reader.hpp"
 #include "packer/preview/ground.hpp"
-#include "packer/sources/rtabmap_database.hpp"
+#include "packer/sources/open_source.hpp"
 #include "platform/command_line/command_line.hpp"
 #include "runtime/pack_format/file/accounting.hpp"
 #include "runtime/pack_format/file/checksum.hpp"
@@ -65,14 +66,14 @@ std::string source_text(const fb::Provenance& source) {
 struct ReportOptions {
   std::string folder, out;
   PayloadMask payload = kDefaultPayload;
-  std::optional<std::filesystem::path> db;
+  SourceOptions source;
 };
 
 MapDrawing ground_of(const ReportOptions& options) {
-  if (!options.db) return drawing_of(MapReader(options.folder));
-  RtabmapDatabase database(*options.db);
-  MapDrawing drawing = drawing_of(database);
-  database.require_unchanged();
+  if (options.source.path.empty()) return drawing_of(MapReader(options.folder));
+  const std::unique_ptr<MapSource> source = open_source(options.source);
+  MapDrawing drawing = drawing_of(*source);
+  source->require_unchanged();
   return drawing;
 }
 
@@ -130,11 +131,8 @@ void add_report_command(CLI::App& app, int& exit_code) {
   add_report_option(*command, options->out, "file to write: .html, .png or .svg")->required();
   add_payload_option(*command, "--payload", options->payload,
                      "what to count besides the core; default features,scan,grid");
-  command
-      ->add_option("--db", options->db,
-                   "take the occupancy grid from this RTAB-Map database; default: from the local "
-                   "grids in the packs")
-      ->type_name("DB");
+  add_source_options(*command, options->source,
+                     "take the occupancy grid from this map instead of the packs");
   add_examples(*command, {"zonepack report map --out map.html",
                           "zonepack report map --db map.db --out map.svg"});
   command->callback([options, &exit_code] {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "packer/decode/record_decoder.hpp"
+#include "packer/export/keyframe_json.hpp"
 #include "packer/export/signature_json.hpp"
 
 namespace zonepack::packer {
@@ -29,10 +30,17 @@ std::vector<OrdinalRange> windows_of(const fb::PackIndex& index, ByteCount windo
   return windows;
 }
 
+// Each kind of map is exported in its own terms.
+auto writer_of(const fb::Manifest& manifest) {
+  const flatbuffers::String* const kind = manifest.provenance()->source_kind();
+  return kind != nullptr && kind->string_view() == "stella" ? &write_keyframe : &write_signature;
+}
+
 }  // namespace
 
 void export_zone(const MapReader& map, const fb::Zone& zone, JsonLines& json,
                  ByteCount window_bytes) {
+  const auto write = writer_of(map.manifest());
   const std::string path = map.pack_path(zone);
   const PackReader pack = map.open_pack(zone);
   for (const OrdinalRange window : windows_of(pack.index(), window_bytes)) {
@@ -43,8 +51,8 @@ void export_zone(const MapReader& map, const fb::Zone& zone, JsonLines& json,
     }
     for (std::uint32_t i = window.first; i <= window.last; ++i) {
       try {
-        write_signature(json, zone.name()->string_view(), decode_record(decoded->view(), i),
-                        map.manifest().payload_mask());
+        write(json, zone.name()->string_view(), decode_record(decoded->view(), i),
+              map.manifest().payload_mask());
       } catch (const std::runtime_error& error) {
         throw std::runtime_error(path + ": " + error.what() + "; build the map again");
       }

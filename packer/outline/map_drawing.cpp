@@ -8,7 +8,7 @@
 namespace zonepack::packer {
 namespace {
 
-MapDrawing from_grids(RtabmapDatabase& database) {
+MapDrawing from_grids(MapSource& source) {
   MapDrawing plan;
   plan.source = "local grids";
   constexpr PayloadSet kGridOnly{.features = false,
@@ -19,10 +19,10 @@ MapDrawing from_grids(RtabmapDatabase& database) {
                                  .userdata = false};
   std::optional<OccupancyMap> map;
   SignatureRecord record;
-  for (const NodeOutline& node : database.outline().nodes) {
+  for (const NodeOutline& node : source.outline().nodes) {
     if (!node.pose || node.damaged) continue;
     try {
-      database.read(node.id, kGridOnly, record);
+      source.read(node.id, kGridOnly, record);
     } catch (const DamagedSignature& damage) {
       plan.warnings.push_back(std::string(damage.what()) + "; its grid is left out");
       continue;
@@ -38,10 +38,10 @@ MapDrawing from_grids(RtabmapDatabase& database) {
 
 }  // namespace
 
-MapDrawing drawing_of(RtabmapDatabase& database) {
-  const std::optional<OptimisedMap>& own = database.outline().optimised_map;
+MapDrawing drawing_of(MapSource& source) {
+  const std::optional<OptimisedMap>& own = source.outline().optimised_map;
   if (own && own->resolution > 0) return {image_of(*own), "the database's own map", 0, {}};
-  return from_grids(database);
+  return from_grids(source);
 }
 
 }  // namespace zonepack::packer

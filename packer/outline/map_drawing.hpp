@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "packer/outline/map_image.hpp"
-#include "packer/sources/rtabmap_database.hpp"
+#include "packer/record/map_source.hpp"
 
 namespace zonepack::packer {
 
@@ -20,6 +20,6 @@ struct MapDrawing {
 
 // The database's own map or, without one, what the local grids of its signatures add up to; leaves
 // out grids that are damaged, with a warning. Throws std::runtime_error as OccupancyMap does.
-MapDrawing drawing_of(RtabmapDatabase& database);
+MapDrawing drawing_of(MapSource& source);
 
 }  // namespace zonepack::packer

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "packer/sources/map_outline.hpp"
+#include "packer/record/map_outline.hpp"
 
 // An occupancy grid as an image, and its file formats.
 namespace zonepack::packer {

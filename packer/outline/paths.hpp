@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "packer/sources/map_outline.hpp"
+#include "packer/record/map_outline.hpp"
 
 // Where the robot was while it recorded the map, for a map editor (QGIS).
 //

@@ -15,6 +15,9 @@ namespace zonepack::packer {
 
 using Bytes = std::vector<std::byte>;
 
+// The largest matrix accepted from a source: a scan of ten million points.
+inline constexpr std::uint64_t kLargestMatrixBytes = std::uint64_t{256} << 20;
+
 // Rigid transform, row-major 3x4: rotation and translation of the child in the parent.
 using Transform = std::array<float, 12>;
 

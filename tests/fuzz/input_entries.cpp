@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "packer/encode/packable.hpp"
-#include "packer/sources/rtabmap_database.hpp"
+#include "packer/sources/rtabmap/rtabmap_database.hpp"
 #include "packer/zones/zone_file.hpp"
 #include "runtime/protocol/messages.hpp"
 #include "runtime/recording/block.hpp"

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "packer/encode/pack_writer.hpp"
-#include "packer/sources/rtabmap_database.hpp"
+#include "packer/sources/rtabmap/rtabmap_database.hpp"
 #include "runtime/pack_format/file/pack_reader.hpp"
 #include "tests/support/temporary_folder.hpp"
 

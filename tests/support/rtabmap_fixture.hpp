@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "packer/record/map_outline.hpp"
 #include "packer/record/record.hpp"
-#include "packer/sources/map_outline.hpp"
 
 // Small RTAB-Map databases made by tests, in the schema of any version from 0.11 to 0.23.
 namespace zonepack::test_support {

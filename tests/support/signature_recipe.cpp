@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "packer/sources/rtabmap_blobs.hpp"
+#include "packer/sources/rtabmap/rtabmap_blobs.hpp"
 #include "tests/support/blob_writer.hpp"
 
 namespace zonepack::test_support {

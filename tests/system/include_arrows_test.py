@@ -80,8 +80,12 @@ ARROWS = {
                                 " runtime/localize/replay runtime/localize/run runtime/protocol runtime/report runtime/run",
 
     "packer/record": "",
-    "packer/sources": "packer/record platform/base",
-    "packer/outline": "packer/record packer/sources",
+    "packer/align": "packer/record platform/base",
+    "packer/sources/sqlite": "packer/record platform/base",
+    "packer/sources/rtabmap": "packer/record packer/sources/sqlite platform/base",
+    "packer/sources/stella": "packer/align packer/record packer/sources/sqlite platform/base",
+    "packer/sources": "packer/record packer/sources/rtabmap packer/sources/stella",
+    "packer/outline": "packer/record",
     "packer/zones": "platform/base runtime/pack_format runtime/pack_format/file",
     "packer/encode": "packer/record platform platform/base runtime/pack_format runtime/pack_format/file",
     "packer/decode": "packer/record platform/base runtime/pack_format runtime/pack_format/file",
@@ -94,7 +98,7 @@ ARROWS = {
     "packer/console": "platform platform/base runtime/pack_format",
     "packer/inspect": "packer/console packer/decode packer/verify platform/base runtime/pack_format/file",
     "packer/commands": "packer/build packer/console packer/decode packer/export packer/inspect packer/outline"
-                       " packer/preview packer/sources packer/verify packer/zones platform platform/base"
+                       " packer/preview packer/record packer/sources packer/verify packer/zones platform platform/base"
                        " platform/command_line runtime/pack_format runtime/pack_format/file runtime/report",
     "packer": "platform/command_line platform/signals.hpp packer/commands platform/version runtime/pack_format/file",
 }
@@ -109,12 +113,12 @@ FOREIGN = {
     r"xxhash": "runtime/pack_format/file",
     r"sodium": "runtime/pack_format/file runtime/run",
     r"yaml-cpp/": "runtime/settings runtime/live runtime/localize/camera",
-    r"Eigen/": "runtime/calibrate runtime/localize/camera runtime/localize/features runtime/localize/solve runtime/localize/query runtime/localize/check",
+    r"Eigen/": "packer/align packer/sources/stella runtime/calibrate runtime/localize/camera runtime/localize/features runtime/localize/solve runtime/localize/query runtime/localize/check",
     r"CLI/": "platform/command_line runtime/zoned runtime/ctl runtime/localize/zoneloc packer packer/commands"
              " packer/console",
-    r"sqlite3\.h": "packer/sources",
-    r"zlib\.h": "packer/sources packer/preview",
-    r"nlohmann/": "packer/commands packer/console packer/inspect packer/outline packer/verify packer/zones",
+    r"sqlite3\.h": "packer/sources/sqlite",
+    r"zlib\.h": "packer/sources/rtabmap packer/preview",
+    r"nlohmann/": "packer/sources/stella packer/commands packer/console packer/inspect packer/outline packer/verify packer/zones",
     r"opencv": "runtime/localize/features",
     r"(jpeglib|jerror|png)\.h": "runtime/localize/camera runtime/localize/explain",
 }

@@ -51,6 +51,10 @@ if(TARGET zonepack)
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/packer_hints_test.py $<TARGET_FILE:zonepack>
                    ${PROJECT_SOURCE_DIR})
   set_tests_properties(system/packer_examples system/packer_hints PROPERTIES TIMEOUT 300)
+  add_test(NAME system/stella
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/stella_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/stella PROPERTIES TIMEOUT 600)
 endif()
 
 # Maps that ask for more memory than the budget: at start, at SIGHUP, and after the refusal.

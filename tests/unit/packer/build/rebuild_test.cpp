@@ -48,7 +48,7 @@ class Rebuild : public testing::Test {
  protected:
   Rebuild() {
     std::ofstream(disk_ / "zones.geojson") << kRooms;
-    options_.database = disk_ / "map.db";
+    options_.source = disk_ / "map.db";
     options_.zones = disk_ / "zones.geojson";
     options_.out = disk_ / "map";
     build();
@@ -56,7 +56,7 @@ class Rebuild : public testing::Test {
   }
 
   void build() {
-    test_support::write_rtabmap_database(options_.database, fixture_);
+    test_support::write_rtabmap_database(options_.source.path, fixture_);
     std::ostringstream silent;
     Progress progress(silent, false);
     build_map(options_, progress);

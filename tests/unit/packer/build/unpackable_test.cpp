@@ -30,7 +30,7 @@ class Unpackable : public testing::TestWithParam<Case> {};
 TEST_P(Unpackable, IsNamedAndLeftOutOnRequest) {
   const test_support::TemporaryFolder folder;
   BuildOptions options;
-  options.database = folder / "map.db";
+  options.source = folder / "map.db";
   options.zones = folder / "zones.geojson";
   options.out = folder / "map";
   std::ofstream(options.zones) << R"({"type": "FeatureCollection", "features": [
@@ -45,8 +45,8 @@ TEST_P(Unpackable, IsNamedAndLeftOutOnRequest) {
     recipe.global_descriptor = true;
     fixture.signatures.push_back(test_support::make_signature(recipe));
   }
-  test_support::write_rtabmap_database(options.database, fixture);
-  test_support::execute(options.database, GetParam().sql);
+  test_support::write_rtabmap_database(options.source.path, fixture);
+  test_support::execute(options.source.path, GetParam().sql);
   std::ostringstream silent;
   Progress progress(silent, false);
   try {

@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr const char* kZones = ZONEPACK_TEST_DATA "/zones.geojson";
-constexpr const char* kDatabase = ZONEPACK_TEST_DATA "/hospital-small.db";
+const std::filesystem::path kDatabase = ZONEPACK_TEST_DATA "/hospital-small.db";
 
 ordered_json hospital() {
   std::ifstream file(kZones);

@@ -25,7 +25,7 @@ class ReportCommandTest : public testing::Test {
   static void SetUpTestSuite() {
     folder_ = std::make_unique<test_support::TemporaryFolder>();
     BuildOptions options;
-    options.database = fs::path(ZONEPACK_TEST_DATA) / "hospital-small.db";
+    options.source = fs::path(ZONEPACK_TEST_DATA) / "hospital-small.db";
     options.zones = fs::path(ZONEPACK_TEST_DATA) / "zones.geojson";
     options.out = *folder_ / "map";
     std::ostringstream quiet;

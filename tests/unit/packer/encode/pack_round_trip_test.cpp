@@ -4,7 +4,7 @@
 
 #include "packer/decode/record_decoder.hpp"
 #include "packer/encode/pack_writer.hpp"
-#include "packer/sources/rtabmap_database.hpp"
+#include "packer/sources/rtabmap/rtabmap_database.hpp"
 #include "runtime/pack_format/file/pack_reader.hpp"
 #include "tests/support/rtabmap_fixture.hpp"
 #include "tests/support/signature_recipe.hpp"

@@ -32,7 +32,7 @@ class ZoneExport : public ::testing::Test {
         << R"({"name":"hall","zone_type":"hall"},"geometry":{"type":"Polygon","coordinates":)"
         << "[[[0,-5],[30,-5],[30,5],[0,5],[0,-5]]]}}]}";
     BuildOptions options;
-    options.database = folder_ / "map.db";
+    options.source = folder_ / "map.db";
     options.zones = folder_ / "zones.geojson";
     options.out = folder_ / "map";
     std::ostringstream ignored;

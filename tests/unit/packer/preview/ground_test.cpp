@@ -9,6 +9,7 @@
 
 #include "packer/build/map_builder.hpp"
 #include "packer/preview/png_file.hpp"
+#include "packer/sources/rtabmap/rtabmap_database.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace zonepack::packer {
@@ -67,7 +68,7 @@ TEST(Raster, KeepsAWallOfOneCell) {
 
 std::string build_map(const fs::path& out, PayloadMask payload) {
   BuildOptions options;
-  options.database = fs::path(ZONEPACK_TEST_DATA) / "hospital-small.db";
+  options.source = fs::path(ZONEPACK_TEST_DATA) / "hospital-small.db";
   options.zones = fs::path(ZONEPACK_TEST_DATA) / "zones.geojson";
   options.out = out;
   options.payload = payload;

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "packer/record/map_source.hpp"
+
+namespace zonepack::packer {
+
+// Where a map stands that was made in a frame of its own: without level or, with one camera, scale.
+struct Placement {
+  // A trajectory (TUM: stamp x y z qx qy qz qw) of the robot's base in the frame wanted.
+  std::filesystem::path trajectory;
+  std::optional<double> metres_per_unit;
+  std::optional<std::array<double, 3>> up;  // in the source's frame, any length; none: found
+  // x, y, z in metres, then roll, pitch, yaw in degrees, of a camera that at zero looks along the
+  // base's x axis. None: at the base, turned as the trajectory shows or looking along x.
+  std::optional<std::array<double, 6>> camera_in_base;
+};
+
+// How a source is opened. All commands share these options.
+struct SourceOptions {
+  SourceOptions() = default;
+  SourceOptions(std::filesystem::path where) : path(std::move(where)) {}
+
+  std::string name() const { return path.string(); }
+
+  std::filesystem::path path;
+  std::string kind;  // SourceKind::name; empty: found by content
+  Placement placement;
+};
+
+// One kind of map that can be packed.
+struct SourceKind {
+  const char* name;  // of --from, and of the manifest's source_kind
+  const char* what;  // "an RTAB-Map database"
+  // Whether a file or folder is of this kind, by its content. Throws nothing: what cannot be read
+  // is of no kind.
+  bool (*recognises)(const std::filesystem::path& path);
+  std::unique_ptr<MapSource> (*open)(const SourceOptions& options);
+};
+
+}  // namespace zonepack::packer
