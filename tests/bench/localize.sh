@@ -5,7 +5,8 @@
 # BIN holds zonepack, zoneloc and localize_queries, built with optimisation (cmake --preset release); the rows of a lost
 # robot need localize_lost too, and are left out without it. DATA holds hospital.db, hospital-small.db, zones.geojson,
 # scenario1_loop and scenario2_roundtrip with their images. Progress goes to standard error, the table to standard
-# output. The rows of memory need zoned too, and a memory cgroup, and are left out without. --quick takes every fifth image and 200 false priors: a minute, for a first look. Whole, it takes about five.
+# output. The rows of memory need zoned too and a memory cgroup, and are left out without. --quick takes every fifth
+# image and 200 false priors: two minutes, for a first look. Whole, it takes about fifteen.
 # The acceptance test was fitted to these two missions, so their rows are no proof for another; the stand-ins use the
 # same images too, spoilt by a seed of their own. Times are thread CPU: measure on a machine that does nothing else.
 # Exit code: 0 all targets met, 1 some missed or something failed, 2 usage.

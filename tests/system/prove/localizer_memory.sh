@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# usage: localizer_memory.sh BIN SOURCE DB MISSION SPEED [lost]: zoned at plan's smallest budget and zoneloc beside it, in one
-# memory cgroup limited to budget + 12 MiB for zoned + 26 MiB for zoneloc: the kernel kills nothing, its limit is not
-# hit, and zoneloc's own memory (what it maps of zoned's is zoned's) is at most 26 MiB, looked at 10 times a
-# second. Then the same under less, until it fails, which shows that it can. lost: nothing says where the robot starts, so
+# usage: localizer_memory.sh BIN SOURCE DB MISSION SPEED [lost]: zoned at plan's smallest budget and zoneloc beside it,
+# in one memory cgroup limited to budget + 12 MiB for zoned + 26 MiB for zoneloc: the kernel kills nothing, its limit is
+# not hit, and zoneloc's own memory (what it maps of zoned's is zoned's) is at most 26 MiB, looked at 10 times a second.
+# Then the same under less, until it fails, which shows that it can. lost: nothing says where the robot starts, so
 # zoneloc searches the map, zone by zone.
 # MISSION: a folder with can0.log, base_groundtruth.txt, calibration.yaml, rgb.txt and its images. They are read before,
 # outside of the group: a camera's images come from no file. So are the libraries: the kernel charges a file's pages to
