@@ -42,9 +42,11 @@ std::vector<Damage> sorted(std::vector<Damage> damages) {
 class MapBuilder {
  public:
   MapBuilder(const BuildOptions& options, Progress& progress)
-      : options_(options), progress_(progress), source_(open_source(options.source)) {
-    zones_ = load_zone_file(options.zones.string(), options.snap_m);
-  }
+      : options_(options),
+        progress_(progress),
+        zones_(load_zone_file(options.zones.string(), options.snap_m)),
+        lookup_(zones_.plan.zones),
+        source_(open_source(with_zones(options.source))) {}
 
   BuildSummary build() {
     outline();
@@ -57,6 +59,7 @@ class MapBuilder {
   }
 
  private:
+  SourceOptions with_zones(SourceOptions source) const;
   void outline();
   void place();
   void pack(MapFolder& folder, const ZonePlan& plan, const std::vector<std::uint32_t>& zone_of);
@@ -70,8 +73,9 @@ class MapBuilder {
 
   const BuildOptions& options_;
   Progress& progress_;
-  std::unique_ptr<MapSource> source_;
   ZoneFile zones_;
+  ZoneLookup lookup_;
+  std::unique_ptr<MapSource> source_;
   BuildSummary summary_;
 
   std::vector<SignaturePlace> places_;  // of the signatures to pack, by id
@@ -86,6 +90,13 @@ class MapBuilder {
   RepeatedFeatures repeated_;
   std::mutex mutex_;
 };
+
+SourceOptions MapBuilder::with_zones(SourceOptions source) const {
+  source.zone_at = [this](double x_m, double y_m, double z_m) {
+    return lookup_.at({x_m, y_m}, z_m);
+  };
+  return source;
+}
 
 void MapBuilder::outline() {
   const MapOutline& outline = source_->outline();

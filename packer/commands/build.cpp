@@ -54,6 +54,7 @@ nlohmann::ordered_json to_json(const BuildSummary& s, const std::filesystem::pat
   }
   json["charged_bytes"] = s.charged_bytes;
   json["charged_over_feature_rows"] = ratio(s.charged_bytes, s.feature_row_bytes);
+  json["charged_over_source"] = ratio(s.charged_bytes, s.source_bytes);
   json["stored_bytes"] = s.stored_bytes;
   json["stored_over_source"] = ratio(s.stored_bytes, s.source_bytes);
   json["source_bytes"] = s.source_bytes;
@@ -155,7 +156,9 @@ void run_build(const BuildArguments& arguments, std::ostream& text) {
        << counted(s.features, "feature") << " in " << counted(s.packs.size(), "zone")
        << (s.unchanged ? " (unchanged)" : "") << "\n"
        << std::fixed << std::setprecision(3) << "  charged " << size_text(s.charged_bytes) << ", "
-       << ratio(s.charged_bytes, s.feature_row_bytes) << " of the database's feature rows; stored "
+       << ratio(s.charged_bytes, s.feature_row_bytes > 0 ? s.feature_row_bytes : s.source_bytes)
+       << (s.feature_row_bytes > 0 ? " of the database's feature rows; stored "
+                                   : " of the source's points; stored ")
        << size_text(s.stored_bytes) << ", " << ratio(s.stored_bytes, s.source_bytes)
        << " of the database's own\n"
        << "  smallest budget " << size_text(s.smallest.bytes) << "\n";

@@ -55,6 +55,18 @@ CLI::Option* add_source_options(CLI::App& command, SourceOptions& source, const 
           },
           "what --db is, instead of what its content shows: " + names)
       ->type_name("KIND");
+  command
+      .add_option_function<double>(
+          "--tile",
+          [&source](double metres) {
+            if (!(metres >= 0.1 && metres <= 10000)) {
+              throw CLI::ValidationError("--tile", "expected 0.1 to 10000 metres");
+            }
+            source.tile_m = metres;
+          },
+          "side of the tiles that a point cloud (*.pcd) is cut into, also at zone borders; default "
+          "10")
+      ->type_name("METRES");
   Placement& placement = source.placement;
   CLI::Option* const align =
       command

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "packer/decode/record_decoder.hpp"
+#include "packer/export/cloud_json.hpp"
 #include "packer/export/keyframe_json.hpp"
 #include "packer/export/signature_json.hpp"
 
@@ -32,8 +33,9 @@ std::vector<OrdinalRange> windows_of(const fb::PackIndex& index, ByteCount windo
 
 // Each kind of map is exported in its own terms.
 auto writer_of(const fb::Manifest& manifest) {
-  const flatbuffers::String* const kind = manifest.provenance()->source_kind();
-  return kind != nullptr && kind->string_view() == "stella" ? &write_keyframe : &write_signature;
+  const std::string kind = flatbuffers::GetString(manifest.provenance()->source_kind());
+  if (kind == "stella") return &write_keyframe;
+  return kind == "pcd" || kind == "autoware" || kind == "glim" ? &write_tile : &write_signature;
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +35,10 @@ struct SourceOptions {
   std::filesystem::path path;
   std::string kind;  // SourceKind::name; empty: found by content
   Placement placement;
+  double tile_m = 10;  // the side of a tile, where a cloud is cut into tiles
+  // The zone at a place of the map, or any number for none: clouds are cut where it changes. Empty:
+  // there are no zones.
+  std::function<std::uint32_t(double x_m, double y_m, double z_m)> zone_at;
 };
 
 // One kind of map that can be packed.

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "packer/sources/cloud/cloud_kinds.hpp"
 #include "packer/sources/foreign_map.hpp"
 #include "packer/sources/rtabmap/rtabmap_kind.hpp"
 #include "packer/sources/stella/stella_kind.hpp"
@@ -13,7 +14,7 @@
 namespace zonepack::packer {
 namespace {
 
-constexpr std::array kKinds = {&kRtabmapKind, &kStellaKind};
+constexpr std::array kKinds = {&kRtabmapKind, &kStellaKind, &kPcdKind, &kAutowareKind, &kGlimKind};
 
 }  // namespace
 

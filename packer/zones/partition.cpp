@@ -98,6 +98,14 @@ Partition partition(std::span<const PlannedZone> zones, std::span<const Signatur
   return result;
 }
 
+ZoneLookup::ZoneLookup(std::span<const PlannedZone> zones) : zones_(zones) {
+  for (const PlannedZone& zone : zones) boxes_.push_back(bounds(zone.polygon.outer));
+}
+
+std::uint32_t ZoneLookup::at(Point2 p_map, double z_map_m) const {
+  return holder_of(zones_, boxes_, {0, p_map, z_map_m}).zone;
+}
+
 std::size_t count_outside(std::span<const PlannedZone> zones,
                           std::span<const SignaturePlace> signatures) {
   std::vector<Box2> boxes;

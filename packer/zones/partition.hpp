@@ -61,6 +61,19 @@ struct Partition {
 Partition partition(std::span<const PlannedZone> zones, std::span<const SignaturePlace> signatures,
                     OrphanPolicy policy);
 
+// The zone at one place after the other, by rules 1 to 3; kNone outside of all.
+//
+// Ownership: refers to the zones.   Threads: any.
+class ZoneLookup {
+ public:
+  explicit ZoneLookup(std::span<const PlannedZone> zones);
+  std::uint32_t at(Point2 p_map, double z_map_m) const;
+
+ private:
+  std::span<const PlannedZone> zones_;
+  std::vector<Box2> boxes_;
+};
+
 // How many signatures are in none of the zones, by rules 1 and 2.
 std::size_t count_outside(std::span<const PlannedZone> zones,
                           std::span<const SignaturePlace> signatures);

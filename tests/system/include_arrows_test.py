@@ -81,10 +81,11 @@ ARROWS = {
 
     "packer/record": "",
     "packer/align": "packer/record platform/base",
+    "packer/sources/cloud": "packer/record",
     "packer/sources/sqlite": "packer/record platform/base",
     "packer/sources/rtabmap": "packer/record packer/sources/sqlite platform/base",
     "packer/sources/stella": "packer/align packer/record packer/sources/sqlite platform/base",
-    "packer/sources": "packer/record packer/sources/rtabmap packer/sources/stella",
+    "packer/sources": "packer/record packer/sources/cloud packer/sources/rtabmap packer/sources/stella",
     "packer/outline": "packer/record",
     "packer/zones": "platform/base runtime/pack_format runtime/pack_format/file",
     "packer/encode": "packer/record platform platform/base runtime/pack_format runtime/pack_format/file",

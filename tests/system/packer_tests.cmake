@@ -54,7 +54,10 @@ if(TARGET zonepack)
   add_test(NAME system/stella
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/stella_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
-  set_tests_properties(system/stella PROPERTIES TIMEOUT 600)
+  add_test(NAME system/clouds
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/cloud_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/stella system/clouds PROPERTIES TIMEOUT 600)
 endif()
 
 # Maps that ask for more memory than the budget: at start, at SIGHUP, and after the refusal.
