@@ -55,6 +55,11 @@ void Cycle::continue_from(std::uint64_t cycle, std::int64_t start_ns) noexcept {
   start_ns_ = start_ns;
 }
 
+void Cycle::continue_lost(ZoneId sought) noexcept {
+  state_.lost = true;
+  state_.sought = sought < needs_.size() ? sought : kNoZone;
+}
+
 const CycleState& Cycle::run(const CycleInput& input) noexcept {
   const std::int64_t now_ns = input.now_ns;
   if (state_.cycles == 0) start_ns_ = now_ns;

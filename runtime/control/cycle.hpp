@@ -111,6 +111,8 @@ class Cycle {
   // Continues the numbers and times of a run: the next run() is its cycle `cycle`, start_ns the
   // time of its cycle 0. Before the first run().
   void continue_from(std::uint64_t cycle, std::int64_t start_ns) noexcept;
+  // The run was lost then, and `sought` the zone that its localizer waited for (kNoZone: none).
+  void continue_lost(ZoneId sought) noexcept;
 
   // The first call starts the run.
   const CycleState& run(const CycleInput& input) noexcept;

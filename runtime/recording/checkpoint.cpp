@@ -9,7 +9,7 @@
 namespace zonepack {
 namespace {
 
-constexpr std::uint8_t kHasPose = 1, kFrozen = 2, kOtherMap = 4, kHeld = 8;
+constexpr std::uint8_t kHasPose = 1, kFrozen = 2, kOtherMap = 4, kHeld = 8, kLost = 16;
 constexpr std::size_t kFixedRoom = 256;
 constexpr std::size_t kZoneRoom = 10;  // two varints of 32 bits
 constexpr std::size_t kMostZones = (kMostBlockBytes - kFixedRoom) / kZoneRoom / 2;
@@ -40,7 +40,7 @@ std::vector<std::byte> write_checkpoint(const Checkpoint& checkpoint) {
   const bool other_map = checkpoint.map != 1 || checkpoint.offered_map != 0;
   out.u8(static_cast<std::uint8_t>((checkpoint.has_pose ? kHasPose : 0) |
                                    (checkpoint.frozen ? kFrozen : 0) | (other_map ? kOtherMap : 0) |
-                                   (checkpoint.held ? kHeld : 0)));
+                                   (checkpoint.held ? kHeld : 0) | (checkpoint.lost ? kLost : 0)));
   out.f64(checkpoint.T_map_base.x_m);
   out.f64(checkpoint.T_map_base.y_m);
   out.f64(checkpoint.T_map_base.yaw_rad);
@@ -59,6 +59,7 @@ std::vector<std::byte> write_checkpoint(const Checkpoint& checkpoint) {
     out.u32(checkpoint.map);
     out.u32(checkpoint.offered_map);
   }
+  if (checkpoint.lost) out.u32(checkpoint.sought);
   ZP_REQUIRE(out.ok());
   bytes.resize(out.size());
   return bytes;
@@ -74,6 +75,7 @@ Result<Checkpoint> read_checkpoint(ByteSpan content) {
   checkpoint.has_pose = (flags & kHasPose) != 0;
   checkpoint.frozen = (flags & kFrozen) != 0;
   checkpoint.held = (flags & kHeld) != 0;
+  checkpoint.lost = (flags & kLost) != 0;
   checkpoint.T_map_base = {in.f64(), in.f64(), in.f64()};
   checkpoint.sigma_m = in.f64();
   checkpoint.sigma_rad = in.f64();
@@ -94,6 +96,7 @@ Result<Checkpoint> read_checkpoint(ByteSpan content) {
     checkpoint.map = in.u32();
     checkpoint.offered_map = in.u32();
   }
+  if (checkpoint.lost) checkpoint.sought = in.u32();
   if (!in.finished()) return ErrorCode::kBadStructure;
   return checkpoint;
 }

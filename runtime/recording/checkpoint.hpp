@@ -31,6 +31,8 @@ struct Checkpoint {
   std::uint32_t map = 1;          // number in the run of the map in use
   std::uint32_t offered_map = 0;  // that is to replace it; 0: none
   ZoneId zone = kNoZone;          // the robot's own
+  bool lost = false;              // a localizer searches the map
+  ZoneId sought = kNoZone;        // while lost: the zone that it waits for
   bool frozen = false;            // by command
   bool held = false;              // by the hold line
   std::vector<Held> resident;     // least recently used first

@@ -30,6 +30,8 @@ void InputTap::on_inputs(std::uint64_t cycle, const CycleInput& input,
     head.zone = state_->zone;
     head.map = state_->map;
     head.has_pose = pose.valid;
+    head.lost = state_->lost;
+    head.sought = state_->sought;
   }
   ByteWriter records(scratch_);
   write_records(input, records);

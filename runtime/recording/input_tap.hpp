@@ -25,6 +25,8 @@ struct TappedCycle {
     std::uint32_t offered_map = 0;  // that the cycle was offered; 0: none
     ZoneId zone = kNoZone;
     bool has_pose = false;
+    bool lost = false;        // a localizer said so
+    ZoneId sought = kNoZone;  // while lost
   };
   Head head;
   ByteSpan records;  // input_record.hpp

@@ -62,6 +62,8 @@ void InputWriter::begin_block(const TappedCycle& cycle) {
   checkpoint.sigma_rad = head.sigma_rad;
   checkpoint.map = head.map;
   checkpoint.zone = head.zone;
+  checkpoint.lost = head.lost;
+  checkpoint.sought = head.sought;
   mirror_.describe(checkpoint);
   flight_->begin_segment(checkpoint, gap);
 }

@@ -98,6 +98,7 @@ void RecordedDrive::go_on_from(const Checkpoint& checkpoint) {
   }
   Cycle& cycle = map.cycle;
   cycle.continue_from(checkpoint.cycle, checkpoint.start_ns);
+  if (checkpoint.lost) cycle.continue_lost(checkpoint.sought);
   if (checkpoint.has_pose) {
     cycle.start_at(checkpoint.now_ns, checkpoint.T_map_base,
                    std::max(checkpoint.sigma_m, settings_.pose.start_sigma_m),

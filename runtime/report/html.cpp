@@ -117,7 +117,11 @@ std::string to_html(const Report& report) {
   for (const Table& table : report.tables) html += table_html(table);
   html +=
       element("footer", report.origin) + "</main>\n<script type=\"application/json\" id=\"data\">";
-  html.append(data_json(report)).append("</script>\n<script>\n").append(kPageScript);
+  html.append(data_json(report)).append("</script>\n<script>\n");
+  for (const std::string_view part :
+       {kPageBase, kPageFigures, kPageCursor, kPageRobot, kPageEvents, kPageMoment}) {
+    html.append(part);
+  }
   return html + "</script>\n</body>\n</html>\n";
 }
 

@@ -50,7 +50,7 @@ struct Report {
 };
 
 // A page that needs nothing else, prints well, fits a phone and follows the reader's choice of a
-// light or dark page. It shows everything without its script (report.js), which adds values under
+// light or dark page. It shows everything without its script (page/), which adds values under
 // the cursor, playing the run, the list of events and tables in another order.
 std::string to_html(const Report& report);
 

@@ -11,6 +11,9 @@
 
 namespace zonepack {
 
+// A largest value that limits nothing: SETTINGS.md says "or more".
+inline constexpr double kNoMost = 9e15;
+
 // One key of a section: its name, where its value goes, what is allowed, what it means. A number
 // must lie in [least, most]; other kinds ignore these.
 template <typename Section>

@@ -5,7 +5,8 @@
 # BIN holds zonepack, zoneloc and localize_queries, built with optimisation (cmake --preset release); the rows of a lost
 # robot need localize_lost too, and are left out without it. DATA holds hospital.db, hospital-small.db, zones.geojson,
 # scenario1_loop and scenario2_roundtrip with their images. Progress goes to standard error, the table to standard
-# output. --quick takes every fifth image and 200 false priors: a minute, for a first look. Whole, it takes about five.
+# output. The rows of memory need zoned too and a memory cgroup, and are left out without. --quick takes every fifth
+# image and 200 false priors: two minutes, for a first look. Whole, it takes about fifteen.
 # The acceptance test was fitted to these two missions, so their rows are no proof for another; the stand-ins use the
 # same images too, spoilt by a seed of their own. Times are thread CPU: measure on a machine that does nothing else.
 # Exit code: 0 all targets met, 1 some missed or something failed, 2 usage.
@@ -185,6 +186,29 @@ if [ -x "$bin/localize_lost" ]; then
   lost_rows hospital-small 10 0.90 20 0.98
 else
   progress "no $bin/localize_lost: the rows of a lost robot are left out"
+fi
+
+# What zoneloc keeps of its own beside zoned, both in one cgroup; ten looks a second while the mission is driven.
+memory_row() { # WHAT [lost]
+  local what=$1 text own code=0
+  shift
+  progress "memory, $what"
+  text=$("$root/tests/system/prove/localizer_memory.sh" "$bin" "$root" "$data/hospital.db" "$data/$s1" 4 "$@" 2>&1) ||
+    code=$?
+  echo "$text" >"$work/memory.${1:-known}.txt"
+  own=$(sed -n 's/^zoneloc, .* looks: at most \([0-9.]*\) MiB of its own.*/\1/p' <<<"$text")
+  if [ $code = 77 ]; then
+    progress "${text##*$'\n'}: the row is left out"
+  else
+    row "memory of zoneloc, hospital s1, $what" "914 to 1064 MB" "<= 26 MiB" "${own:-unknown} MiB" "${own:-1000} <= 26" \
+      "$code == 0"
+  fi
+}
+if [ -x "$bin/zoned" ]; then
+  memory_row "known start"
+  memory_row "lost" lost
+else
+  progress "no $bin/zoned: the rows of memory are left out"
 fi
 
 printf '%-52s | %-15s | %-22s | %s\n' what RTAB-Map target measured

@@ -61,13 +61,13 @@ ARROWS = {
                             " runtime/protocol runtime/run runtime/serve runtime/settings",
     "runtime/ctl": "platform/command_line platform/signals.hpp platform/version runtime/ctl/commands runtime/protocol",
 
-    "runtime/localize/camera": "platform platform/base runtime/run",
+    "runtime/localize/camera": "platform platform/base runtime/pack_format/file runtime/run",
     "runtime/localize/features": "platform platform/base runtime/localize/camera",
     "runtime/localize/solve": "runtime/localize/camera runtime/odometry",
     "runtime/localize/query": "platform platform/base runtime/client runtime/localize/camera"
                               " runtime/localize/features runtime/localize/solve runtime/map runtime/odometry"
                               " runtime/pack_format runtime/pack_format/file",
-    "runtime/localize/lost": "runtime/localize/features runtime/localize/query"
+    "runtime/localize/lost": "platform/base runtime/control runtime/localize/features runtime/localize/query"
                              " runtime/localize/solve runtime/map runtime/odometry runtime/pack_format"
                              " runtime/pack_format/file",
     "runtime/localize/check": "platform/base runtime/localize/camera runtime/localize/query runtime/localize/solve",

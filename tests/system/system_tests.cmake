@@ -52,6 +52,10 @@ if(TARGET zonepack AND TARGET zoned AND TARGET zonectl AND TARGET zoneloc)
   add_test(NAME system/localizer_lost
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/localize/lost_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
+  add_test(NAME system/localizer_check
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/localize/check_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/localizer_check PROPERTIES TIMEOUT 1800)
   add_test(NAME system/version
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/version_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR} ${PROJECT_VERSION})

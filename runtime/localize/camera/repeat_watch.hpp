@@ -2,34 +2,33 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <optional>
+#include <span>
 
 #include "runtime/localize/camera/grey_image.hpp"
+#include "runtime/pack_format/file/checksum.hpp"
 
 namespace zonepack::localize {
 
 // Notices a camera that hangs: it gives the same image over and over, while the noise of a working
 // one is never the same twice.
-//
-// Memory: the pixels of the last image.
 class RepeatWatch {
  public:
-  // Whether the image is the one before, bit for bit.
-  bool repeats(const GreyImage& image) {
-    if (seen_ && image.width == width_ && image.height == height_ && image.pixels == last_) {
-      return true;
-    }
-    seen_ = true;
-    width_ = image.width;
-    height_ = image.height;
-    last_ = image.pixels;
-    return false;
+  // Whether the image is the one before, bit for bit, as far as 64 bits of checksum say.
+  bool repeats(const GreyImage& image) noexcept {
+    const Last now{image.width, image.height, xxh3(std::as_bytes(std::span(image.pixels)))};
+    const bool same = last_ == now;
+    last_ = now;
+    return same;
   }
 
  private:
-  bool seen_ = false;
-  int width_ = 0, height_ = 0;
-  std::vector<std::uint8_t> last_;
+  struct Last {
+    int width = 0, height = 0;
+    std::uint64_t pixels = 0;
+    friend bool operator==(const Last&, const Last&) = default;
+  };
+  std::optional<Last> last_;
 };
 
 }  // namespace zonepack::localize

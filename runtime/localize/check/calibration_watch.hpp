@@ -54,9 +54,9 @@ double least_of_note(CameraTrait trait) noexcept;
 // the robot's height and tilt over a level floor, with the pose's six degrees of freedom
 // eliminated (Schur complement). The sum over the fixes is solved. Its noise is not that of pixels,
 // as the map's own errors are shared by fixes near each other: so it is taken from how much groups
-// of consecutive fixes disagree (the cluster-robust "sandwich" estimate). A trait counts when it is
-// over kSignificant standard deviations and over what a map may be off by; of several the clearest
-// is taken first, and another only when it is still significant next to it.
+// of consecutive fixes disagree (the cluster-robust "sandwich" estimate), and what maps are off by
+// as a whole is added. A trait counts when it is over kSignificant standard deviations and of note;
+// of several the clearest is taken first, and another only when it is still significant next to it.
 //
 // Memory: at most kMostGroups groups of 14 numbers: when they are full, two make one.
 // Threads: one.

@@ -60,6 +60,11 @@ void LostSweep::begin(std::int64_t now_ns, ZoneId last) {
   forget_views();
 }
 
+void LostSweep::end() {
+  active_ = false;
+  forget_views();
+}
+
 void LostSweep::forget_views() {
   search_.restart();
   moments_.clear();

@@ -50,7 +50,8 @@ class LostSweep {
   LostSweep(std::vector<SearchZone> map, PlaceMatcher& matcher, const LostRule& rule = {});
 
   void begin(std::int64_t now_ns, ZoneId last);
-  void end() noexcept { active_ = false; }
+  // Lets go of the views.
+  void end();
   bool active() const noexcept { return active_; }
 
   // An image was taken.

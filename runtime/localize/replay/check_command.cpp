@@ -2,6 +2,7 @@
 #include "runtime/localize/replay/check_command.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <utility>
@@ -26,6 +27,23 @@ struct Checked {
   int runs = 0;
 };
 
+// How far to go with what one run says. Matches are found with the camera as it is thought to be,
+// which keeps those that agree with it: a run shows only a part of what is wrong, down to two
+// fifths. The part follows from how much of the last step the next run misses (the secant method).
+class Approach {
+ public:
+  double step(double shown) {
+    double part = 1;
+    if (last_step_ != 0) part = std::clamp((last_shown_ - shown) / last_step_, kLeastPart, 1.0);
+    last_shown_ = shown;
+    return last_step_ = shown / part;
+  }
+
+ private:
+  static constexpr double kLeastPart = 0.25;
+  double last_shown_ = 0, last_step_ = 0;
+};
+
 Failure too_few(const LoopArguments& arguments, const Checked& checked) {
   const std::size_t needed = CalibrationWatch::kLeastGroups * CalibrationWatch::kFixesOfGroup;
   return failure(arguments.images + ": " + std::to_string(checked.first.fixes) + " fixes in " +
@@ -40,6 +58,7 @@ Outcome<Checked> check(const LoopArguments& arguments) {
   if (!camera) return camera.error();
   Checked out;
   CameraTraits total{}, sigmas{};
+  std::array<Approach, kCameraTraits> approach;
   std::vector<CameraTrait> wrong;
   bool settled = false;
   while (!settled && out.runs < kMostRuns) {
@@ -58,10 +77,11 @@ Outcome<Checked> check(const LoopArguments& arguments) {
     settled = true;
     for (const CalibrationFinding& finding : lessons->watch.together(wrong)) {
       const auto place = static_cast<std::size_t>(finding.trait);
-      total[place] += finding.value;
+      const double step = approach[place].step(finding.value);
+      total[place] += step;
       sigmas[place] = finding.sigma;
       const double little = std::max(finding.sigma, least_of_note(finding.trait) / 8);
-      settled = settled && std::abs(finding.value) < little;
+      settled = settled && std::abs(step) < little;
     }
   }
   for (const CameraTrait trait : wrong) {

@@ -125,48 +125,56 @@ Outcome<LoopInputs> read_inputs(const LoopArguments& arguments) {
                     std::move(images), std::move(baseline), std::move(beside)};
 }
 
-// Reads the images and looks at them. A repeated one is refused as `zoneloc run` refuses it.
-class Finder {
+// Reads the images of the drive and looks at them. A repeated one is refused as `zoneloc run`
+// refuses it.
+class Camera {
  public:
-  Finder(Localizer& localizer, const CameraModel& camera)
+  Camera(Localizer& localizer, const CameraModel& camera)
       : localizer_(localizer), camera_(camera) {}
 
-  Outcome<QueryResult> operator()(const LoopImage& image, std::span<const MapFeatures* const> map,
-                                  const QueryPrior& prior) {
-    auto pixels = read_image(image.file);
+  Outcome<QueryResult> find(const LoopImage& image, std::span<const MapFeatures* const> map,
+                            const QueryPrior& prior) {
+    const auto pixels = read(image);
     if (!pixels) return pixels.error();
+    if (!fits(*pixels) && ++wrong_size_ <= 5) {
+      note("warning: " + wrong_size(image, *pixels) + "; nothing is sent for it");
+    }
+    return localizer_.query(*pixels, map, prior);
+  }
+
+  // For a search.
+  Outcome<ImageFeatures> describe(const LoopImage& image) {
+    const auto pixels = read(image);
+    if (!pixels) return pixels.error();
+    if (!fits(*pixels)) return failure(wrong_size(image, *pixels));
+    return *localizer_.detect(*pixels);
+  }
+
+ private:
+  Outcome<GreyImage> read(const LoopImage& image) {
+    auto pixels = read_image(image.file);
+    if (!pixels) return pixels;
     if (repeat_.repeats(*pixels)) {
       return failure(image.file +
                      ": repeats the image before bit for bit: the camera hangs; "
                      "nothing is sent for it");
     }
     pixels->stamp_ns = image.stamp_ns;
-    if ((pixels->width != camera_.width || pixels->height != camera_.height) &&
-        ++wrong_size_ <= 5) {
-      note("warning: " + image.file + ": is " + size_text(pixels->width, pixels->height) +
-           ", but the calibration is for images of " + size_text(camera_.width, camera_.height) +
-           "; nothing is sent for it");
-    }
-    return localizer_.query(*pixels, map, prior);
+    return pixels;
+  }
+  bool fits(const GreyImage& pixels) const noexcept {
+    return pixels.width == camera_.width && pixels.height == camera_.height;
+  }
+  std::string wrong_size(const LoopImage& image, const GreyImage& pixels) const {
+    return image.file + ": is " + size_text(pixels.width, pixels.height) +
+           ", but the calibration is for images of " + size_text(camera_.width, camera_.height);
   }
 
- private:
   Localizer& localizer_;
   const CameraModel& camera_;
   RepeatWatch repeat_;
   std::size_t wrong_size_ = 0;
 };
-
-ImageDescriber describer(Localizer& localizer) {
-  return [&localizer](const LoopImage& image) -> Outcome<ImageFeatures> {
-    auto pixels = read_image(image.file);
-    if (!pixels) return pixels.error();
-    pixels->stamp_ns = image.stamp_ns;
-    auto features = localizer.detect(*pixels);
-    if (!features) return failure(image.file + ": is not of the calibration's size");
-    return std::move(*features);
-  };
-}
 
 Outcome<void> write_figures(const LoopFigures& figures, const LoopArguments& arguments) {
   Failures failed;
@@ -214,8 +222,8 @@ Outcome<void> drive(const LoopArguments& arguments, const CameraTraits& camera_i
   }
   LogMatch frames(log);
   Localizer localizer(inputs->camera, inputs->map.detector);
-  Finder finder(localizer, inputs->camera);
-  CameraLoop loop(inputs->images, std::ref(finder),
+  Camera camera(localizer, inputs->camera);
+  CameraLoop loop(inputs->images, std::bind_front(&Camera::find, &camera),
                   {.latency_ns = std::llround(arguments.latency_s * 1e9),
                    .descriptor_bytes = inputs->map.detector.descriptor_bytes()});
   loop.on_progress(Progress());
@@ -223,7 +231,7 @@ Outcome<void> drive(const LoopArguments& arguments, const CameraTraits& camera_i
   localizer.options().keep_matches = true;
   loop.on_fix([&](const QueryResult& fix) { watch.add(inputs->camera, fix); });
   ImageMatcher matcher(localizer, inputs->map.detector);
-  LostLoop lost(inputs->run.catalog, matcher, describer(localizer),
+  LostLoop lost(inputs->run.catalog, matcher, std::bind_front(&Camera::describe, &camera),
                 inputs->map.detector.descriptor_bytes(),
                 arguments.start.kind == StartChoice::Kind::kFix);
   loop.search_with(lost);
@@ -273,9 +281,8 @@ Outcome<void> drive(const LoopArguments& arguments, const CameraTraits& camera_i
   figures.lost = lost.figures();
   if (lost.searching()) figures.lost.lost_s += lost.lost_for_s(loop.end_ns());
   for (const ZoneId zone : lost.sweep().passed_over()) {
-    note("warning: zone " + inputs->run.catalog.zones[zone].name +
-         " was not loaded in time to be searched: it does not fit next to what is held, or cannot "
-         "be read; a larger --budget gives it room");
+    note("warning: " +
+         passed_over_text(inputs->run.catalog.zones[zone].name, "a larger --budget gives it room"));
   }
   if (truth != nullptr) {
     const auto map = MapError::read(inputs->map);

@@ -4,14 +4,12 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "platform/base/failure.hpp"
 #include "runtime/localize/features/image_features.hpp"
-#include "runtime/localize/lost/lost_sweep.hpp"
-#include "runtime/localize/lost/sight_watch.hpp"
-#include "runtime/localize/lost/wheel_path.hpp"
+#include "runtime/localize/lost/search_driver.hpp"
 #include "runtime/replay/fix_source.hpp"
 #include "runtime/run/command_lines.hpp"
 
@@ -27,25 +25,26 @@ using ImageDescriber = std::function<Outcome<ImageFeatures>(const LoopImage& ima
 //
 // Time is the replay's: comparing a view with a signature is taken to last kPair_ns, so that the
 // same input gives the same events everywhere.
-class LostLoop {
+class LostLoop final : private SearchWorld {
  public:
   static constexpr std::int64_t kPair_ns = 300'000;
 
-  struct Figures {
+  struct Figures : SearchDriver::Figures {
     std::size_t times_lost = 0;
     double lost_s = 0;
-    std::size_t zones_looked_at = 0;  // each time
-    std::size_t pairs = 0;            // of a view and a signature
-    std::size_t turns_asked = 0;
   };
 
   // `matcher` outlives this object. start_lost: the run begins so.
   LostLoop(const Catalog& map, PlaceMatcher& matcher, ImageDescriber describe,
-           std::uint32_t descriptor_bytes, bool start_lost);
+           std::uint32_t descriptor_bytes, bool start_lost)
+      : driver_(search_zones(map), matcher, *this),
+        describe_(std::move(describe)),
+        descriptor_bytes_(descriptor_bytes),
+        start_lost_(start_lost) {}
 
   // Before anything else of a cycle.
   void follow(const FixMoment& moment);
-  bool searching() const noexcept { return sweep_.active() && !given_ns_; }
+  bool searching() const noexcept { return driver_.active() && !driver_.waits(now_ns_); }
   // An image, while searching.
   Outcome<void> see(const LoopImage& image);
   // An image's query, while not searching.
@@ -57,28 +56,28 @@ class LostLoop {
   // All that was commanded.
   const std::vector<TimedCommand>& commands() const noexcept { return commanded_; }
   double lost_for_s(std::int64_t now_ns) const noexcept {
-    return static_cast<double>(now_ns - lost_since_ns_) * 1e-9;
+    return static_cast<double>(now_ns - driver_.begun_ns()) * 1e-9;
   }
-  const Figures& figures() const noexcept { return figures_; }
-  const LostSweep& sweep() const noexcept { return sweep_; }
+  Figures figures() const noexcept { return {driver_.figures(), times_lost_, lost_s_}; }
+  const LostSweep& sweep() const noexcept { return driver_.sweep(); }
 
  private:
   void lose(const FixMoment& moment);
-  void post(Command::Kind kind, ZoneId zone = kNoZone);
+  const ResidentZones::Zone* find(ZoneId zone) const noexcept;
+  bool resident(ZoneId zone) const override { return find(zone) != nullptr; }
+  std::optional<std::vector<MapFeatures>> read(ZoneId zone) override;
+  Result<void> command(Command::Kind kind, ZoneId zone) override;
 
-  LostSweep sweep_;
-  SightWatch watch_;
+  SearchDriver driver_;
   ImageDescriber describe_;
   std::uint32_t descriptor_bytes_;
   bool start_lost_;
-  WheelPath wheels_{1'000'000'000};
+  const ResidentZones* resident_ = nullptr;  // during search()
   std::vector<Command> waiting_;
   std::vector<TimedCommand> commanded_;
-  ZoneId sought_ = kNoZone;
-  std::int64_t busy_until_ns_ = INT64_MIN, lost_since_ns_ = 0;
-  std::optional<std::int64_t> given_ns_;  // when fixes were given that are not taken yet
-  std::uint64_t images_ = 0;
-  Figures figures_;
+  std::int64_t now_ns_ = 0, busy_until_ns_ = INT64_MIN;
+  std::size_t times_lost_ = 0;
+  double lost_s_ = 0;
 };
 
 }  // namespace zonepack::localize

@@ -11,8 +11,6 @@
 namespace zonepack::localize {
 
 // Judges the images of a camera before they are used: size, stamp, and whether they are new.
-//
-// Memory: the pixels of the last image.
 class FrameWatch {
  public:
   // A stamp may be this much behind its clock (a fix that is older finds no place in zoned's

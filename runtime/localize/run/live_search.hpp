@@ -3,14 +3,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "runtime/localize/lost/lost_sweep.hpp"
-#include "runtime/localize/lost/sight_watch.hpp"
-#include "runtime/localize/lost/wheel_path.hpp"
+#include "runtime/localize/lost/search_driver.hpp"
 #include "runtime/localize/query/localizer.hpp"
 #include "runtime/localize/run/fix_counters.hpp"
 #include "runtime/localize/run/zoned_link.hpp"
@@ -21,7 +18,7 @@ namespace zonepack::localize {
 // one zone after the other, and each is read in its memory and compared with the buffered views.
 //
 // Threads: one.
-class LiveSearch {
+class LiveSearch final : private SearchWorld {
  public:
   using Say = std::function<void(const std::string&)>;
 
@@ -29,7 +26,7 @@ class LiveSearch {
   LiveSearch(ZonedLink& link, std::vector<SearchZone> zones, Localizer& localizer,
              const DetectorSettings& detector, FixCounters& counters, Say say);
 
-  bool searching() const noexcept { return sweep_.active(); }
+  bool searching() const noexcept { return driver_.active(); }
   // What zoned says about the robot, as often as it is asked: the path of the wheels.
   void follow(const RobotState& state);
   // An image while searching, stamped on the run's clock.
@@ -42,7 +39,10 @@ class LiveSearch {
   Result<std::vector<FoundFix>> step(const RobotState& state);
 
  private:
-  bool look(ZoneId zone);
+  bool resident(ZoneId zone) const override { return link_.resident(zone); }
+  std::optional<std::vector<MapFeatures>> read(ZoneId zone) override;
+  Result<void> command(Command::Kind kind, ZoneId zone) override;
+  void report();
 
   ZonedLink& link_;
   ImageMatcher matcher_;
@@ -50,14 +50,9 @@ class LiveSearch {
   std::uint32_t descriptor_bytes_;
   FixCounters& counters_;
   Say say_;
-  LostSweep sweep_;
-  SightWatch watch_;
-  WheelPath wheels_{6'000'000'000};
-  ZoneId sought_ = kNoZone;
-  std::int64_t begun_ns_ = 0;
-  std::optional<std::int64_t> given_ns_;
+  SearchDriver driver_;
   std::size_t told_passed_over_ = 0;
-  std::uint64_t images_ = 0;
+  std::uint64_t images_ = 0;  // of this search
 };
 
 }  // namespace zonepack::localize

@@ -40,6 +40,12 @@ class ResidentFeatures {
   // Valid until the next call.
   std::span<const MapFeatures* const> near(ZonesInMemory& zones, const QueryPrior& prior);
 
+  // Gives the memory back, while nothing is near anything: the robot is lost.
+  void forget() noexcept {
+    zones_.clear();
+    near_.clear();
+  }
+
   std::size_t signatures_held() const noexcept;
   // Reads that found their zone unloaded half-way.
   std::uint64_t expired() const noexcept { return expired_; }

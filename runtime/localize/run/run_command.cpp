@@ -200,6 +200,7 @@ void Run::look(const GreyImage& image) {
   if (const std::string why = watch_.refuse(image, clock_now()); !why.empty()) return refuse(why);
   const auto state = ask_state();
   if (state && search_ && search_->searching()) {
+    features_->forget();
     search_->see(image, on_run_clock(image.stamp_ns, clock, *state, offset_ns));
     return search();
   }

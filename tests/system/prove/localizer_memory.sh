@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# usage: localizer_memory.sh BIN SOURCE DB MISSION SPEED: zoned at plan's smallest budget and zoneloc beside it, in one
-# memory cgroup limited to budget + 12 MiB for zoned + 26 MiB for zoneloc: the kernel kills nothing, its limit is not
-# hit, and zoneloc's own memory (what it maps of zoned's is zoned's) is at most 26 MiB, looked at 10 times a
-# second. Then the same under less, until it fails, which shows that it can.
+# usage: localizer_memory.sh BIN SOURCE DB MISSION SPEED [lost]: zoned at plan's smallest budget and zoneloc beside it,
+# in one memory cgroup limited to budget + 12 MiB for zoned + 26 MiB for zoneloc: the kernel kills nothing, its limit is
+# not hit, and zoneloc's own memory (what it maps of zoned's is zoned's) is at most 26 MiB, looked at 10 times a second.
+# Then the same under less, until it fails, which shows that it can. lost: nothing says where the robot starts, so
+# zoneloc searches the map, zone by zone.
 # MISSION: a folder with can0.log, base_groundtruth.txt, calibration.yaml, rgb.txt and its images. They are read before,
 # outside of the group: a camera's images come from no file. So are the libraries: the kernel charges a file's pages to
 # who reads them first and far more of them than the program maps, which is what counts as its own. Exit code 77 where nobody can limit memory, or without images.
 set -euo pipefail
-bin=$1 source=$2 db=$3 mission=$(realpath "$4") speed=$5
+bin=$1 source=$2 db=$3 mission=$(realpath "$4") speed=$5 lost=${6:-}
 . "$(dirname "$0")/lib.sh"
 of_zoned=$((12 << 20)) of_zoneloc=$((26 << 20))
 work=$(mktemp -d) group=
@@ -22,8 +23,9 @@ trap cleanup EXIT
 find_memory_cgroups || { echo "localizer_memory: no memory cgroup here"; exit 77; }
 
 # Where the mission starts, as --start takes it.
-start=$(awk '!/^#/ { yaw = 2 * atan2($7, $8) * 180 / 3.14159265358979; printf "%s,%s,%.4f", $2, $3, yaw; exit }' \
-  "$mission/base_groundtruth.txt")
+start=(--start "$(awk '!/^#/ { yaw = 2 * atan2($7, $8) * 180 / 3.14159265358979; printf "%s,%s,%.4f", $2, $3, yaw; exit }' \
+  "$mission/base_groundtruth.txt")")
+[ -z "$lost" ] || start=()
 
 # Ten times a second until a process ends, a line: its own memory (heap, stacks, program, libraries), of that the files'
 # (program, libraries), and all, in bytes.
@@ -43,7 +45,7 @@ drive() {  # NAME LIMIT
   export ZONED_SOCKET=$run/zoned.sock STATE_DIRECTORY=$run/state
   (
     echo "$BASHPID" >"$group/cgroup.procs"
-    exec "$work/zoned" run --config "$source/config/agilex.yaml" --map "$work/map" --budget "$budget" --start "$start" \
+    exec "$work/zoned" run --config "$source/config/agilex.yaml" --map "$work/map" --budget "$budget" "${start[@]}" \
       --can "log:$mission/can0.log@$speed" --quiet --json "$run/zoned.json"
   ) >"$run/zoned.txt" 2>&1 &
   zoned=$!

@@ -248,6 +248,40 @@ TEST_F(FlightRecorderTest, ContinuesFromACheckpointAsFromAGuess) {
   EXPECT_EQ(end_of(again), end_of(live));
 }
 
+// The recording begins while the robot is lost and its localizer waits for a zone, which the replay
+// goes on to have loaded; that it is found is an event of the same cycle as in the run.
+TEST_F(FlightRecorderTest, ContinuesARunThatWasLostAtItsCheckpoint) {
+  drive.lost = {.from = 6000, .until = 8000, .sought = 9};
+  auto flight = FlightRecorder::open(path("flight"), true, 64 * kMiB, drive.preface());
+  drive.drive(7, path("live.jsonl"), nullptr, flight->get(),
+              [&](std::uint64_t cycle, InputWriter& writer) {
+                if (cycle < 500 || cycle >= 6500) writer.flush();
+              });
+  ASSERT_TRUE((*flight)->dump(path("dump.zpr")).ok());
+  const auto reader = RecordingReader::open(path("dump.zpr"));
+  ASSERT_TRUE(reader.ok()) << reader.error().message;
+  ASSERT_TRUE(reader->checkpoint());
+  EXPECT_TRUE(reader->checkpoint()->lost);
+  EXPECT_EQ(reader->checkpoint()->sought, 9u);
+  EXPECT_FALSE(reader->checkpoint()->has_pose);
+  ASSERT_TRUE(replay(path("dump.zpr"))) << fault;
+  const auto of_the_search = [&](const std::string& events) {
+    std::istringstream lines(text_of(path(events)));
+    std::string line, chosen;
+    while (std::getline(lines, line)) {
+      if (std::stoull(line.substr(line.find(':') + 1)) <= 6501) continue;
+      if (line.find("\"pose_") != std::string::npos ||
+          line.find("\"zone_unwanted\",\"zone\":\"L2\"") != std::string::npos) {
+        chosen += line.substr(0, line.find("signatures\"")) + '\n';
+      }
+    }
+    return chosen;
+  };
+  EXPECT_EQ(of_the_search("again.jsonl"), of_the_search("live.jsonl"));
+  EXPECT_THAT(of_the_search("live.jsonl"), HasSubstr("pose_found"));
+  EXPECT_THAT(of_the_search("live.jsonl"), HasSubstr("zone_unwanted"));  // L2 was waited for
+}
+
 TEST_F(FlightRecorderTest, CountsWhatItCannotWriteAndContinues) {
   auto flight = FlightRecorder::open(path("flight"), true, kMiB, drive.preface());
   append(**flight, 0);

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <random>
 #include <set>
 #include <sstream>
@@ -65,6 +66,14 @@ class RecordedDrive {
   // Called after each cycle's inputs are in the tap: may drain it or look at it.
   using AfterCycle = std::function<void(std::uint64_t cycle, InputWriter& writer)>;
 
+  // A stretch of the drive on which the robot is lost: its localizer says so, has a zone loaded
+  // ten cycles later and gives no fix before the end.
+  struct LostStretch {
+    std::uint64_t from = 0, until = 0;
+    ZoneId sought = kNoZone;
+  };
+  std::optional<LostStretch> lost;
+
   // Drives, and writes the events to a file. file and flight may be null. Returns the hash of the
   // events.
   std::string drive(std::uint64_t seed, const std::string& events, RecordingFile* file,
@@ -110,19 +119,25 @@ class RecordedDrive {
       while (taken < corrections->size() && (*corrections)[taken].received_ns <= now_ns) ++taken;
       loads.clear();
       while (const auto load = loader.poll()) loads.push_back(*load);
-      const std::vector<Command> commands = made_up(random, map->needs.size(), leases);
+      std::vector<Command> commands = made_up(random, map->needs.size(), leases);
+      std::size_t fixes = taken - first;
+      if (lost && number >= lost->from && number < lost->until) {
+        fixes = 0;
+        commands.clear();
+        if (number == lost->from) commands.emplace_back().kind = Command::Kind::kLost;
+        if (number == lost->from + 10) {
+          commands.emplace_back().kind = Command::Kind::kSeek;
+          commands.back().zone = lost->sought;
+        }
+      }
       std::vector<LineEdge> edges;
       if (hand() % 400 == 0) edges.push_back({now_ns - 1000, LineEdge::kHold, held = !held});
       if (hand() % 300 == 0) edges.push_back({now_ns, LineEdge::kFirstMarker, hand() % 3 != 0});
       if (number % 2500 == 2000) edges.push_back({now_ns - 30'000'000, LineEdge::kDock, true});
       if (number % 2500 == 2010) edges.push_back({now_ns, LineEdge::kDock, false});
-      const CycleInput input{now_ns,
-                             {frames.data(), count},
-                             {corrections->data() + first, taken - first},
-                             loads,
-                             commands,
-                             {},
-                             edges};
+      const CycleInput input{
+          now_ns, {frames.data(), count}, {corrections->data() + first, fixes}, loads, commands, {},
+          edges};
       const std::int64_t offset_ns = 1000 + static_cast<std::int64_t>(number / 1000);
       tap.on_inputs(number, input, offset_ns);
       cycle.run(input);

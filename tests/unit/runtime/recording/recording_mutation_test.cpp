@@ -92,6 +92,8 @@ TEST_F(RecordingMutation, OfCheckpointsDoesNotLeadTheReplayAstray) {
   checkpoint.resident = {{.zone = 3, .generation = 2}, {.zone = 4, .generation = 1}};
   checkpoint.pinned = {7};
   checkpoint.route = {1, 2, 3};
+  checkpoint.lost = true;
+  checkpoint.sought = 5;
   CycleBlockWriter block(10'000'000);
   TappedCycle cycle;
   for (cycle.head.cycle = 5000; cycle.head.cycle < 5020; ++cycle.head.cycle) {
