@@ -9,7 +9,7 @@
 namespace zonepack::packer {
 namespace {
 
-constexpr std::size_t kLeastPairs = 3;
+constexpr std::size_t kLeastMoments = 3;
 // Points whose second widest spread is below this part of the widest lie on one line.
 constexpr double kLineSpread = 1e-4;
 
@@ -122,8 +122,8 @@ Transform PointTransform::operator()(const Transform& T) const noexcept {
 
 PointFit fit_points(std::span<const Point3> from, std::span<const Point3> to, FitModel model) {
   const std::size_t pairs = std::min(from.size(), to.size());
-  if (pairs < kLeastPairs) {
-    throw std::runtime_error("needs " + std::to_string(kLeastPairs) +
+  if (pairs < kLeastMoments) {
+    throw std::runtime_error("needs " + std::to_string(kLeastMoments) +
                              " positions known in both frames, found " + std::to_string(pairs));
   }
   for (const auto points : {from, to}) {
