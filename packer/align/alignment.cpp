@@ -122,7 +122,8 @@ Similarity fit_most(const Matrix3Xd& from, const Matrix3Xd& to) {
 }
 
 void require_meeting(const std::vector<KeyframePose>& keyframes, const Trajectory& trajectory,
-                     std::size_t pairs, const FramePlacement& placement, const std::string& source) {
+                     std::size_t pairs, const FramePlacement& placement,
+                     const std::string& source) {
   if (pairs >= kLeastPairs) return;
   const auto [first, last] = std::ranges::minmax(keyframes, {}, &KeyframePose::stamp_s);
   throw std::runtime_error(placement.trajectory.string() + ": covers " + std::to_string(pairs) +
@@ -169,8 +170,9 @@ void use_turn(const Eigen::Quaterniond& turn, const FramePlacement& placement, A
   }
 }
 
-void align_to_trajectory(const std::vector<KeyframePose>& keyframes, const FramePlacement& placement,
-                         const std::string& source, Alignment& out) {
+void align_to_trajectory(const std::vector<KeyframePose>& keyframes,
+                         const FramePlacement& placement, const std::string& source,
+                         Alignment& out) {
   const Trajectory trajectory = Trajectory::read(placement.trajectory);
   std::vector<Vector3d> from_list, to_list;
   for (const KeyframePose& keyframe : keyframes) {
@@ -218,7 +220,7 @@ Vector3d up_of(const std::vector<KeyframePose>& keyframes, Alignment& out) {
     tops -= keyframes[i].T_world_camera.linear().col(1);
     places.col(static_cast<Eigen::Index>(i)) = keyframes[i].T_world_camera.translation();
   }
-  const Vector3d top = tops.normalized();
+  Vector3d top = tops.normalized();
   const Matrix3Xd centred = places.colwise() - places.rowwise().mean();
   const Matrix3d covariance = centred * centred.transpose();
   const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(covariance);
@@ -258,8 +260,8 @@ std::array<double, 6> camera_in_base(const Isometry3d& T_base_optical) {
   return {p.x(), p.y(), p.z(), roll / kRadians, pitch / kRadians, yaw / kRadians};
 }
 
-Alignment align_keyframes(const std::vector<KeyframePose>& keyframes, const FramePlacement& placement,
-                          bool metric, const std::string& source) {
+Alignment align_keyframes(const std::vector<KeyframePose>& keyframes,
+                          const FramePlacement& placement, bool metric, const std::string& source) {
   Alignment out;
   out.T_base_camera = optical_in_base(placement.camera_in_base.value_or(std::array<double, 6>{}));
   if (keyframes.empty()) return out;

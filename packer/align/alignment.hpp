@@ -47,12 +47,12 @@ std::array<double, 6> camera_in_base(const Eigen::Isometry3d& T_base_optical);
 // With a trajectory: the similarity that moves the cameras' places onto those of the trajectory at
 // the same stamps (Umeyama, "Least-squares estimation of transformation parameters between two
 // point patterns", PAMI 1991), fitted to the places that agree. How the camera is turned in the
-// base follows from the trajectory too: used where FramePlacement does not say, and warned of where it
-// says otherwise. Otherwise the map's frame begins at the first keyframe's base, x forward and z
+// base follows from the trajectory too: used where FramePlacement does not say, and warned of where
+// it says otherwise. Otherwise the map's frame begins at the first keyframe's base, x forward and z
 // up; `metric` says whether the source's unit is a metre.
 //
 // Throws std::runtime_error where nothing follows: stamps that do not meet, all places on a line.
-Alignment align_keyframes(const std::vector<KeyframePose>& keyframes, const FramePlacement& placement,
-                          bool metric, const std::string& source);
+Alignment align_keyframes(const std::vector<KeyframePose>& keyframes,
+                          const FramePlacement& placement, bool metric, const std::string& source);
 
 }  // namespace zonepack::packer

@@ -162,6 +162,7 @@ bool SessionChoice::takes(const std::vector<NamedLayer>& known,
 void require_known(const SessionChoice& choice, const std::vector<NamedLayer>& known,
                    const SessionCounts& sessions, const std::string& where) {
   std::vector<std::string> names;
+  names.reserve(known.size());
   for (const NamedLayer& layer : known) names.push_back(layer.name);
   for (const std::string& name : choice.layers) {
     if (std::ranges::find(names, name) != names.end()) continue;

@@ -6,7 +6,6 @@
 namespace zonepack::packer {
 namespace {
 
-
 template <typename Write>
 void write_list(JsonLines& json, std::string_view key, bool packed, std::size_t count,
                 Write&& write) {

@@ -50,7 +50,8 @@ struct MapPlan {
 };
 
 // `file_bytes`: of the manifest's file, which count from some hundred kilobytes on
-// (accounting.hpp). `layers`: zones of others are not loaded, as memory.layers says; empty: all are.
+// (accounting.hpp). `layers`: zones of others are not loaded, as memory.layers says; empty: all
+// are.
 MapPlan plan_map(const fb::Manifest& manifest, PayloadMask payload, std::span<const ZoneId> pinned,
                  std::optional<ByteCount> budget, ByteCount file_bytes = 0,
                  const std::vector<std::string>& layers = {});

@@ -42,7 +42,8 @@ class ArmCutter {
  private:
   std::size_t local(CellIndex cell) const {
     const std::int32_t x = cell % space_.columns - x0_, y = cell / space_.columns - y0_;
-    return static_cast<std::size_t>(y * box_.columns + x);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(box_.columns) +
+           static_cast<std::size_t>(x);
   }
   bool is_wide(CellIndex cell) const { return wide_[local(cell)] != 0; }
 

@@ -107,8 +107,8 @@ std::vector<std::int32_t> squared_clearance(const FreeSpace& space) {
       }
       const std::int32_t i = centre[top];
       // The last place where i is at least as near as u; the numerator is never negative here.
-      const std::int64_t w =
-          1 + (std::int64_t{u} * u - std::int64_t{i} * i + g2(u) - g2(i)) / (2 * (u - i));
+      const std::int64_t w = 1 + (std::int64_t{u} * u - std::int64_t{i} * i + g2(u) - g2(i)) /
+                                     (std::int64_t{2} * (u - i));
       if (w >= columns) continue;
       ++top;
       centre[top] = u;

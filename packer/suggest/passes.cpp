@@ -45,6 +45,7 @@ class PassJudge {
       pass = {width2, a, b, is_door(border)};
     }
     std::vector<Pass> list;
+    list.reserve(widest.size());
     for (const auto& [pair, pass] : widest) list.push_back(pass);
     std::stable_sort(list.begin(), list.end(),
                      [](const Pass& a, const Pass& b) { return a.clearance2 > b.clearance2; });

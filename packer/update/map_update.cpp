@@ -512,6 +512,7 @@ std::vector<fb::ZoneEdge> MapUpdate::edges() {
     for (const std::int32_t to : signature.links) count(id, to);
   }
   std::vector<fb::ZoneEdge> edges;
+  edges.reserve(counts.size());
   for (const auto& [pair, links] : counts) edges.emplace_back(pair.first, pair.second, links);
   return edges;
 }

@@ -25,7 +25,8 @@ ZoneGraph graph_of(const Catalog& catalog) {
   std::vector<GraphPortal> portals;
   zones.reserve(catalog.zones.size());
   portals.reserve(catalog.portals.size());
-  for (const CatalogZone& zone : catalog.zones) zones.push_back({zone.name, zone.polygon, zone.loadable});
+  for (const CatalogZone& zone : catalog.zones)
+    zones.push_back({zone.name, zone.polygon, zone.loadable});
   for (const CatalogPortal& portal : catalog.portals) {
     portals.push_back({portal.zone_a, portal.zone_b, portal.segment});
   }

@@ -33,7 +33,7 @@ most=$("$bin/zonepack" plan map --json - 2>/dev/null | jq '[.zones[].charged_byt
 privilege=()
 chrt -f 1 true 2>/dev/null || privilege=(--allow-degraded)
 "$bin/zoned" run --config "$config" --map map --can "log:$run/can0.log@1" --corrections "$run/corrections.txt" \
-  --budget $most --record run.zpr --events live.jsonl --json live.json "${privilege[@]}" >out.txt 2>&1 &
+  --budget "$most" --record run.zpr --events live.jsonl --json live.json "${privilege[@]}" >out.txt 2>&1 &
 pid=$!
 until_status ".map_ready and .zones_resident > 1"
 until_status ".zones_loading == 0 or (.zones_loading | not)"

@@ -25,7 +25,9 @@ using Words = std::array<std::uint32_t, 6>;  // x, y, z, then what fields there 
 struct Key {
   std::int64_t x, y;
   std::uint32_t zone;
-  auto operator<=>(const Key&) const = default;
+  bool operator<(const Key& other) const {
+    return std::tie(x, y, zone) < std::tie(other.x, other.y, other.zone);
+  }
 };
 
 struct TileDraft {
@@ -193,7 +195,8 @@ class TiledCloud : public CloudMap {
 
   void describe() {
     version = "pcd";
-    for (const auto& [key, draft] : drafts_) {
+    for (const auto& entry : drafts_) {
+      const TileDraft& draft = entry.second;
       CloudTile& tile = tiles.emplace_back();
       tile.id = static_cast<std::int32_t>(tiles.size());
       tile.points = draft.points;

@@ -193,8 +193,8 @@ void StellaSource::read_links(const StellaKeyframe& keyframe, std::vector<Link>&
   for (const std::int32_t to : keyframe.loop_edges) add(to, kGlobalClosureLink);
   const auto order = [](const Link& link) { return std::tie(link.type, link.to); };
   std::ranges::sort(into, {}, order);
-  const auto same = std::ranges::unique(into, {}, order);
-  into.erase(same.begin(), same.end());
+  const auto same = [&order](const Link& a, const Link& b) { return order(a) == order(b); };
+  into.erase(std::unique(into.begin(), into.end(), same), into.end());
 }
 
 }  // namespace zonepack::packer
