@@ -18,6 +18,7 @@
 #include "packer/build/provenance.hpp"
 #include "packer/decode/zone_records.hpp"
 #include "packer/encode/packable.hpp"
+#include "packer/record/link_order.hpp"
 #include "packer/sources/open_source.hpp"
 #include "packer/update/held_plan.hpp"
 #include "packer/update/newcomers.hpp"
@@ -415,9 +416,7 @@ void MapUpdate::add_links_to_newcomers(MapSource& database, SignatureRecord& rec
     });
     if (!known && taken_.contains(link.to)) record.links.push_back(std::move(link));
   }
-  std::stable_sort(record.links.begin(), record.links.end(), [](const Link& a, const Link& b) {
-    return a.type != b.type ? a.type < b.type : a.to < b.to;
-  });
+  sort_links(record.links);
 }
 
 void MapUpdate::pack_zone(MapSource* database, MapFolder& folder, std::uint32_t zone) {

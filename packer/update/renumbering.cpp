@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "packer/record/link_order.hpp"
+
 namespace zonepack::packer {
 namespace {
 
@@ -141,9 +143,7 @@ void Renumbering::apply(SignatureRecord& record) const {
     if (link.to > 0) link.to = id(link.to);
   }
   // As the records of a database come: sorted by type, then target.
-  std::stable_sort(record.links.begin(), record.links.end(), [](const Link& a, const Link& b) {
-    return a.type != b.type ? a.type < b.type : a.to < b.to;
-  });
+  sort_links(record.links);
 }
 
 }  // namespace zonepack::packer

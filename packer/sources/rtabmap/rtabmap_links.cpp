@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "packer/record/link_order.hpp"
 #include "packer/sources/sqlite/cells.hpp"
 
 namespace zonepack::packer {
@@ -58,9 +59,7 @@ void LinkReader::read(const CellPlace& place, MatrixUnpacker& unpacker, std::vec
     link.user_data = optional_matrix(row, kLinkUserData, place.at("Link.user_data"), unpacker);
     out.push_back(std::move(link));
   }
-  std::stable_sort(out.begin(), out.end(), [](const Link& a, const Link& b) {
-    return std::tie(a.type, a.to) < std::tie(b.type, b.to);
-  });
+  sort_links(out);
 }
 
 // RTAB-Map before 0.13 stored two variances; later versions read them as this diagonal.

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 namespace zonepack::packer {
@@ -180,21 +179,23 @@ void StellaSource::read_features(const StellaKeyframe& keyframe, Features& into)
 }
 
 void StellaSource::read_links(const StellaKeyframe& keyframe, std::vector<Link>& into) const {
-  const Eigen::Isometry3d T_base_map = shared_->T_map_base(keyframe).inverse();
+  std::vector<std::pair<std::int32_t, const StellaKeyframe*>> edges;  // type, to
   const auto add = [&](std::int32_t to, std::int32_t type) {
     const StellaKeyframe* const other = shared_->map.find(to);
-    if (other == nullptr || other->damage || to == keyframe.id) return;
-    Link& link = into.emplace_back();
-    link.to = to;
-    link.type = type;
-    link.transform = transform_of(T_base_map * shared_->T_map_base(*other));
+    if (other != nullptr && !other->damage && to != keyframe.id) edges.emplace_back(type, other);
   };
   add(keyframe.span_parent, kNeighbourLink);
   for (const std::int32_t to : keyframe.loop_edges) add(to, kGlobalClosureLink);
-  const auto order = [](const Link& link) { return std::tie(link.type, link.to); };
-  std::ranges::sort(into, {}, order);
-  const auto same = [&order](const Link& a, const Link& b) { return order(a) == order(b); };
-  into.erase(std::unique(into.begin(), into.end(), same), into.end());
+  // Keyframes stand in order of id, so their places in memory order them.
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  const Eigen::Isometry3d T_base_map = shared_->T_map_base(keyframe).inverse();
+  for (const auto& [type, other] : edges) {
+    Link& link = into.emplace_back();
+    link.to = other->id;
+    link.type = type;
+    link.transform = transform_of(T_base_map * shared_->T_map_base(*other));
+  }
 }
 
 }  // namespace zonepack::packer

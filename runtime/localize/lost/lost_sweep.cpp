@@ -88,7 +88,7 @@ ZoneId LostSweep::next(std::int64_t now_ns, const std::function<bool(ZoneId)>& r
   if (waiting_ != kNoZone && !resident(waiting_)) {
     if (now_ns - waiting_since_ns_ < kPatience_ns) return waiting_;
     passed_over_.push_back(waiting_);
-    failed_[waiting_] = views_ + 1;
+    failed_[waiting_] = static_cast<std::size_t>(views_ + 1);
     waiting_ = kNoZone;
   }
   const ZoneId zone = waiting_ != kNoZone ? waiting_ : choose(resident);
