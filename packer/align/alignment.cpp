@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "packer/align/trajectory.hpp"
+#include "packer/align/umeyama.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -56,12 +57,24 @@ std::string mount_text(const Isometry3d& T_base_optical) {
   return out;
 }
 
+// Whether places spread at least this share of their length to the side; on a line the fit is free.
+bool spans(const Matrix3Xd& places, double share) {
+  const Vector3d spread = spread_of(places);
+  return spread[1] > share * spread[0];
+}
+
 Similarity fit(const Matrix3Xd& from, const Matrix3Xd& to) {
-  const Eigen::Matrix4d m = Eigen::umeyama(from, to, true);
+  const auto points = [](const Matrix3Xd& columns) {
+    std::vector<Point3> out;
+    out.reserve(static_cast<std::size_t>(columns.cols()));
+    for (const auto& p : columns.colwise()) out.push_back({p.x(), p.y(), p.z()});
+    return out;
+  };
+  const PointTransform T = fit_points(points(from), points(to), FitModel::kSimilarity).T_to_from;
   Similarity s;
-  s.metres_per_unit = std::cbrt(m.topLeftCorner<3, 3>().determinant());
-  s.R_map_world = m.topLeftCorner<3, 3>() / s.metres_per_unit;
-  s.t_map_world = m.topRightCorner<3, 1>();
+  s.metres_per_unit = T.scale;
+  s.R_map_world = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(T.rotation.data());
+  s.t_map_world = Vector3d(T.translation.data());
   return s;
 }
 
@@ -98,9 +111,9 @@ Similarity fit_most(const Matrix3Xd& from, const Matrix3Xd& to) {
   for (Eigen::Index i = 0; i < std::min(n, kTriples); ++i) {
     const Eigen::Index first = i * n / std::min(n, kTriples);
     const std::vector<Eigen::Index> triple = {first, (first + n / 3) % n, (first + 2 * n / 3) % n};
-    const Matrix3Xd three = columns_at(from, triple);
-    if (const Vector3d spread = spread_of(three); spread[1] <= 0.1 * spread[0]) continue;
-    const Similarity s = fit(three, columns_at(to, triple));
+    const Matrix3Xd three = columns_at(from, triple), there = columns_at(to, triple);
+    if (!spans(three, 0.1) || !spans(there, kStraight)) continue;
+    const Similarity s = fit(three, there);
     if (const double m = median(s); m < least) {
       least = m;
       best = s;
@@ -113,10 +126,9 @@ Similarity fit_most(const Matrix3Xd& from, const Matrix3Xd& to) {
     for (std::size_t i = 0; i < residuals.size(); ++i) {
       if (residuals[i] <= gate) kept.push_back(static_cast<Eigen::Index>(i));
     }
-    const Matrix3Xd near = columns_at(from, kept);
-    if (kept.size() < kLeastPairs) break;
-    if (const Vector3d spread = spread_of(near); spread[1] <= kStraight * spread[0]) break;
-    best = fit(near, columns_at(to, kept));
+    const Matrix3Xd near = columns_at(from, kept), there = columns_at(to, kept);
+    if (kept.size() < kLeastPairs || !spans(near, kStraight) || !spans(there, kStraight)) break;
+    best = fit(near, there);
   }
   return best;
 }
@@ -188,8 +200,7 @@ void align_to_trajectory(const std::vector<KeyframePose>& keyframes,
     return all;
   };
   const Matrix3Xd from = columns(from_list), to = columns(to_list);
-  const Vector3d spread = spread_of(from);
-  if (spread[1] <= kStraight * spread[0] || spread_of(to)[1] <= kStraight * spread_of(to)[0]) {
+  if (!spans(from, kStraight) || !spans(to, kStraight)) {
     throw std::runtime_error(
         placement.trajectory.string() + ": the keyframes of " + source +
         " stand on a line, so their places alone do not say which side is up; give --scale, --up "

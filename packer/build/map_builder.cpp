@@ -2,13 +2,11 @@
 #include "packer/build/map_builder.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <mutex>
 #include <set>
 #include <stdexcept>
-#include <thread>
 
 #include "packer/build/damages.hpp"
 #include "packer/build/manifest_writer.hpp"
@@ -17,6 +15,7 @@
 #include "packer/build/placing.hpp"
 #include "packer/build/provenance.hpp"
 #include "packer/build/repeated_features.hpp"
+#include "packer/build/zone_jobs.hpp"
 #include "packer/encode/packable.hpp"
 #include "packer/sources/open_source.hpp"
 #include "platform/base/file_kind.hpp"
@@ -167,26 +166,9 @@ void MapBuilder::pack(MapFolder& folder, const ZonePlan& plan,
   for (const auto& members : members_) total += members.size();
   progress_.start("packing", total, "signatures");
 
-  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-  const std::size_t jobs = std::clamp<std::size_t>(options_.jobs == 0 ? cores : options_.jobs, 1,
-                                                   std::max<std::size_t>(order.size(), 1));
-  std::atomic<std::size_t> next = 0;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    try {
-      const std::unique_ptr<MapSource> source = source_->reopen();
-      for (std::size_t i; (i = next++) < order.size();) pack_zone(*source, folder, order[i]);
-    } catch (...) {
-      const std::lock_guard lock(mutex_);
-      if (!failure) failure = std::current_exception();
-      next = order.size();
-    }
-  };
-  std::vector<std::jthread> threads;
-  for (std::size_t i = 1; i < jobs; ++i) threads.emplace_back(work);
-  work();
-  threads.clear();
-  if (failure) std::rethrow_exception(failure);
+  const std::size_t jobs = run_zone_jobs(
+      order.size(), options_.jobs, source_.get(),
+      [&](MapSource* source, std::size_t i) { pack_zone(*source, folder, order[i]); });
   source_->require_unchanged();
   refuse_damaged(damages_, options_.damaged, options_.source.name());
   progress_.finish(std::to_string(total) + " signatures of " + std::to_string(order.size()) +

@@ -2,7 +2,6 @@
 #include "packer/update/map_update.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -11,11 +10,11 @@
 #include <mutex>
 #include <set>
 #include <stdexcept>
-#include <thread>
 
 #include "packer/build/map_folder.hpp"
 #include "packer/build/payload_set.hpp"
 #include "packer/build/provenance.hpp"
+#include "packer/build/zone_jobs.hpp"
 #include "packer/decode/zone_records.hpp"
 #include "packer/encode/packable.hpp"
 #include "packer/record/link_order.hpp"
@@ -375,29 +374,11 @@ void MapUpdate::pack(MapFolder& folder) {
     if (zone != kNone && !contents_[zone].packed) ++sessions_[zone][signature.session];
   }
   progress_.start("packing", order.size(), "zones");
-  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-  const std::size_t jobs = std::clamp<std::size_t>(options_.jobs == 0 ? cores : options_.jobs, 1,
-                                                   std::max<std::size_t>(order.size(), 1));
-  std::atomic<std::size_t> next = 0;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    try {
-      const std::unique_ptr<MapSource> database = database_ ? database_->reopen() : nullptr;
-      for (std::size_t i; (i = next++) < order.size();) {
-        pack_zone(database.get(), folder, order[i]);
-        progress_.advance();
-      }
-    } catch (...) {
-      const std::lock_guard lock(mutex_);
-      if (!failure) failure = std::current_exception();
-      next = order.size();
-    }
-  };
-  std::vector<std::jthread> threads;
-  for (std::size_t i = 1; i < jobs; ++i) threads.emplace_back(work);
-  work();
-  threads.clear();
-  if (failure) std::rethrow_exception(failure);
+  run_zone_jobs(order.size(), options_.jobs, database_.get(),
+                [&](MapSource* database, std::size_t i) {
+                  pack_zone(database, folder, order[i]);
+                  progress_.advance();
+                });
   if (database_) database_->require_unchanged();
   refuse_damaged(damages_, options_.damaged, options_.source.name());
   progress_.finish(std::to_string(order.size()) + (order.size() == 1 ? " zone" : " zones"));

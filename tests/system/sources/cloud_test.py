@@ -7,47 +7,16 @@ crosses the border of a zone that it can be cut at; then every kind of bad input
 """
 import json
 import math
-import os
-import resource
 import struct
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-BIN, SOURCE = (Path(argument).resolve() for argument in sys.argv[1:3])
+from source_tools import BIN, DATABASE, SOURCE, ZONES, build, check_memory, need, refused, zonepack
+
 sys.path.insert(0, str(SOURCE / "tests/support"))
 import hospital_cloud as clouds  # noqa: E402
-
-DATABASE, ZONES = SOURCE / "tests/data/hospital-small.db", SOURCE / "tests/data/zones.geojson"
-MOST_MEMORY = 256 << 20
-
-
-def fail(what):
-    sys.exit(f"cloud_test: {what}")
-
-
-def need(holds, what):
-    if not holds:
-        fail(what)
-
-
-def check_memory():
-    """Of the largest run: a file that lies about its sizes makes nothing large."""
-    sanitized = b"__asan_init" in (BIN / "zonepack").read_bytes()  # which keeps what was freed
-    most = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024
-    need(most < MOST_MEMORY * (4 if sanitized else 1), f"a run took {most} bytes")
-
-
-def zonepack(*arguments, code=0, **environment):
-    command = [str(BIN / "zonepack"), *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120, env={**os.environ, **environment})
-    need(done.returncode == code, f"{' '.join(command)}: exit code {done.returncode}, not {code}: {done.stderr}")
-    return done
-
-
-def build(source, out, *options, **how):
-    return zonepack("build", "--db", source, "--zones", ZONES, "--out", out, *options, **how)
 
 
 def exported(folder):
@@ -144,16 +113,6 @@ def check_other_fields(work):
         need(math.dist(p[:3], q[:3]) < 2e-6, f"{p} has become {q}")
 
 
-def refused(work, name, content, *said, options=(), **environment):
-    path = work / name
-    if content is not None:
-        path.write_bytes(content)
-    done = build(path, work / "never", *options, code=1, **environment)
-    for words in said:
-        need(words in done.stderr, f"{name}: expected '{words}' in: {done.stderr}")
-    need(not (work / "never" / "manifest.zpm").exists(), f"{name}: left a map")
-
-
 def check_bad(work, points):
     few = points[:50]
     def pcd(data):
@@ -191,7 +150,9 @@ def check_bad(work, points):
     refused(work, "none.pcd", ascii_[:ascii_.index(b"DATA")].replace(b" 50", b" 0") + b"DATA ascii\n", "holds no signatures")
     refused(work, "far.pcd", b"VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nPOINTS 1\nDATA ascii\n"
             b"1e30 nan 0\n", "holds no signatures")
-    refused(work, "spool.pcd", binary, "TMPDIR", TMPDIR=str(work / "missing"))
+    (work / "spool.pcd").write_bytes(binary)
+    done = build(work / "spool.pcd", work / "never", code=1, TMPDIR=str(work / "missing"))
+    need("TMPDIR" in done.stderr, done.stderr)
     build(work / "spool.pcd", work / "never", "--tile", 0, code=2)
     (work / "autoware" / "tile_0.pcd").write_bytes(ascii_.replace(b"ring", b"lane"))
     refused(work, "autoware", None, "has other fields than")

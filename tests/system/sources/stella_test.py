@@ -8,8 +8,6 @@ as in the RTAB-Map database; then every kind of bad input, each refused by name 
 import base64
 import json
 import math
-import os
-import resource
 import sqlite3
 import struct
 import subprocess
@@ -17,42 +15,14 @@ import sys
 import tempfile
 from pathlib import Path
 
-BIN, SOURCE = (Path(argument).resolve() for argument in sys.argv[1:3])
+from source_tools import BIN, DATABASE, SOURCE, ZONES, build, check_memory, need, refused, zonepack
+
 sys.path.insert(0, str(SOURCE / "tests/support"))
 import stella_map  # noqa: E402
 
-DATABASE, ZONES = SOURCE / "tests/data/hospital-small.db", SOURCE / "tests/data/zones.geojson"
 MISSION = SOURCE / "tests/data/scenario1_loop"
 SCALE = 0.37  # units of a metre, as a map of one camera may have
 IMAGES = (10, 60, 110, 160, 210)
-MOST_MEMORY = 256 << 20
-
-
-def fail(what):
-    sys.exit(f"stella_test: {what}")
-
-
-def need(holds, what):
-    if not holds:
-        fail(what)
-
-
-def check_memory():
-    """Of the largest run: a file that lies about its sizes makes nothing large."""
-    sanitized = b"__asan_init" in (BIN / "zonepack").read_bytes()  # which keeps what was freed
-    most = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024
-    need(most < MOST_MEMORY * (4 if sanitized else 1), f"a run took {most} bytes")
-
-
-def zonepack(*arguments, code=0):
-    command = [str(BIN / "zonepack"), *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
-    need(done.returncode == code, f"{' '.join(command)}: exit code {done.returncode}, not {code}: {done.stderr}")
-    return done
-
-
-def build(source, out, *options, **how):
-    return zonepack("build", "--db", source, "--zones", ZONES, "--out", out, *options, **how)
 
 
 def exported(folder):
@@ -165,17 +135,6 @@ def check_fixes(work):
             need(math.hypot(pose["x_m"] - here["x_m"], pose["y_m"] - here["y_m"]) < 0.005 and
                  abs(pose["yaw_deg"] - here["yaw_deg"]) < 0.1, f"image {at}: {ours}")
     need(found >= 3, f"only {found} of {len(IMAGES)} images were found, which shows nothing")
-
-
-def refused(work, name, content, *said, options=()):
-    path = work / name
-    if content is not None:
-        path.write_bytes(content)
-    done = build(path, work / "never", *options, code=1)
-    for words in said:
-        need(words in done.stderr, f"{name}: expected '{words}' in: {done.stderr}")
-    need(name in done.stderr, f"{name}: is not named: {done.stderr}")
-    need(not (work / "never" / "manifest.zpm").exists(), f"{name}: left a map")
 
 
 def check_bad_msgpack(work):
