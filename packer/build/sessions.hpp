@@ -21,7 +21,7 @@ NamedLayer parse_layer(const std::string& text);
 // "1-3,5".
 std::string sessions_text(const NamedLayer& layer);
 
-// Puts `given` in the place of layers of their names, or beside the others, sorted by name. Throws
+// Replaces the layers that have the names of `given` and adds the rest, sorted by name. Throws
 // std::runtime_error when a session is in two layers or a name is given twice.
 std::vector<NamedLayer> merged_layers(std::vector<NamedLayer> held,
                                       const std::vector<NamedLayer>& given);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "packer/console/command_line.hpp"
+#include "packer/console/output_path.hpp"
 #include "packer/console/words.hpp"
 #include "packer/decode/map_reader.hpp"
 #include "packer/verify/map_verifier.hpp"
@@ -21,10 +22,6 @@ struct VerifyArguments {
   JsonOutput json;
 };
 
-std::filesystem::path folder_of(const std::filesystem::path& file) {
-  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-}
-
 Verdict verify(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return verify_map(FolderFiles(path));
@@ -32,7 +29,7 @@ Verdict verify(const std::filesystem::path& path) {
     throw std::runtime_error(path.string() + ": " + kind);
   }
   const std::string name = path.filename().string();
-  const FolderFiles folder(folder_of(path));
+  const FolderFiles folder(folder_around(path));
   return name == kManifestName ? verify_map(folder) : verify_one_pack(folder, name);
 }
 

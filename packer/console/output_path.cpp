@@ -19,13 +19,13 @@ namespace fs = std::filesystem;
   throw std::runtime_error(path + ": cannot be written: " + text);
 }
 
-fs::path folder_around(const fs::path& file) {
-  return file.has_parent_path() ? file.parent_path() : fs::path(".");
-}
-
 bool takes_files(const fs::path& folder) { return ::access(folder.c_str(), W_OK | X_OK) == 0; }
 
 }  // namespace
+
+fs::path folder_around(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
 
 void require_writable(const std::string& file) {
   if (file.empty() || file == "-") return;

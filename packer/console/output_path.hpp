@@ -16,4 +16,7 @@ void require_writable(const std::string& file);
 // be a folder that takes new files.
 void require_writable_folder(const std::filesystem::path& folder, const std::string& option);
 
+// The folder that a file stands in: "." for a name alone.
+std::filesystem::path folder_around(const std::filesystem::path& file);
+
 }  // namespace zonepack::packer

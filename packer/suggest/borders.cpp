@@ -93,7 +93,8 @@ class Tracer {
 // In half cells, as centres are.
 Corner doubled(Corner c) { return {2 * c.x, 2 * c.y}; }
 
-// The centres of the two cells beside the edge from `a` to `b`, in half cells: left, right.
+// The centres of the two cells on either side of the edge from `a` to `b`, in half cells: left,
+// right.
 std::pair<Corner, Corner> beside(Corner a, Corner b) {
   const std::int32_t dx = b.x - a.x, dy = b.y - a.y;
   const Corner middle{a.x + b.x, a.y + b.y};

@@ -7,7 +7,7 @@
 #include "packer/suggest/regions.hpp"
 
 // The borders of regions as a planar graph on the corners of cells. A border is traced once for
-// both regions beside it, so neighbours get the same points.
+// both regions that share it, so neighbours get the same points.
 namespace zonepack::packer::suggest {
 
 // A corner of cells: (0, 0) is the lower left corner of cell 0.
@@ -36,7 +36,7 @@ struct Border {
 // All borders, in the order of their first corners.
 std::vector<Border> trace_borders(const Regions& regions, const FreeSpace& space);
 
-// Fewer corners along the same border: every cell beside it keeps its centre on its side, so a
+// Fewer corners along the same border: every cell along it keeps its centre on its side, so a
 // simplified region holds the centres of its own cells and no others, and borders never cross.
 Border simplified(const Border& border);
 
