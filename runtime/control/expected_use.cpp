@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/control/expected_use.hpp"
+
+#include <algorithm>
+
+namespace zonepack {
+
+ExpectedUse::ExpectedUse(const EvictionPlace& place, const Transitions& transitions)
+    : forecast_(transitions),
+      shadow_(place.needs, place.slots),
+      most_loss_(static_cast<std::int64_t>(kMostLoss * static_cast<double>(place.slots))),
+      most_credit_(static_cast<std::int64_t>(kMostCredit * static_cast<double>(place.slots))) {}
+
+void ExpectedUse::begin_cycle(const EvictionMoment& moment) noexcept {
+  const bool elsewhere = moment.zone != zone_ || moment.zone_before != zone_before_;
+  if (elsewhere || !std::ranges::equal(moment.route, ahead_)) {
+    zone_ = moment.zone;
+    zone_before_ = moment.zone_before;
+    ahead_ = moment.route;
+    forecast_.begin(zone_before_, zone_, ahead_);
+  } else {
+    forecast_.advance();
+  }
+}
+
+void ExpectedUse::requested(ZoneId zone, bool /*resident*/) noexcept {
+  loss_ = std::max(loss_ - shadow_.request(zone), -most_credit_);
+}
+
+void ExpectedUse::loaded(ZoneId /*zone*/, ZoneNeed need) noexcept { loss_ += need.slots; }
+
+ZoneId ExpectedUse::choose(const EvictionCandidates& candidates) noexcept {
+  if (loss_ > most_loss_) follows_shadow_ = true;
+  if (loss_ <= 0) follows_shadow_ = false;
+  return follows_shadow_ ? first_outside_shadow(candidates) : least_expected(candidates);
+}
+
+ZoneId ExpectedUse::least_expected(const EvictionCandidates& candidates) noexcept {
+  ZoneId least = candidates.coldest();
+  float value = forecast_.value(least);
+  ZoneId zone = candidates.warmer(least);
+  for (int looks = 1; looks < kMostLooks && zone != kNoZone; ++looks) {
+    if (const float other = forecast_.value(zone); other < value) {
+      value = other;
+      least = zone;
+    }
+    zone = candidates.warmer(zone);
+  }
+  return least;
+}
+
+ZoneId ExpectedUse::first_outside_shadow(const EvictionCandidates& candidates) const noexcept {
+  ZoneId zone = candidates.coldest();
+  for (int looks = 0; looks < kMostLooks && zone != kNoZone; ++looks) {
+    if (!shadow_.holds(zone)) return zone;
+    zone = candidates.warmer(zone);
+  }
+  return candidates.coldest();
+}
+
+}  // namespace zonepack
