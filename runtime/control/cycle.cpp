@@ -93,6 +93,9 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
     replies_[reply_count_++].id = command.id;
   }
   follow_zones(zone_before);
+  if (memory_.has_order()) {
+    memory_.begin_cycle({now_ns, tracker_.zone(), zone_before_, {route_.data(), route_length_}});
+  }
   const Wanted wanted = list_wanted();
   // The first is not the robot's own where that is of a layer that is not used.
   const bool own_first = tracker_.zone() == kNoZone || graph_.loadable(tracker_.zone());
@@ -270,6 +273,7 @@ CommandReply Cycle::obey(const Command& command, std::int64_t now_ns) noexcept {
 void Cycle::follow_zones(ZoneId before) noexcept {
   tracker_.update(state_.pose);
   if (tracker_.zone() != before) {
+    if (before != kNoZone) zone_before_ = before;
     state_.zone = tracker_.zone();
     emit(EventKind::kZoneEntered, state_.zone);
     if (before != kNoZone && state_.zone != kNoZone) {

@@ -181,6 +181,7 @@ class Cycle {
   std::array<CommandReply, kMostCommands> replies_{};
   std::size_t reply_count_ = 0;
   std::int64_t start_ns_ = 0;
+  ZoneId zone_before_ = kNoZone;    // that the robot came from
   double view_m_ = 0;               // how far a localizer sees that gave a fix …
   std::int64_t view_until_ns_ = 0;  // … lately
   bool frozen_ = false;             // by command

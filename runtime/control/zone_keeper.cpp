@@ -100,7 +100,9 @@ void ZoneKeeper::drop_unwanted(std::span<const ZoneId> wanted) noexcept {
     emit(EventKind::kZoneUnwanted, zone);
   }
   for (const ZoneId zone : wanted) {
-    if (!wants({wanted_.data(), wanted_count_}, zone)) emit(EventKind::kZoneWanted, zone);
+    if (wants({wanted_.data(), wanted_count_}, zone)) continue;
+    memory_.request(zone);
+    emit(EventKind::kZoneWanted, zone);
   }
   if (loading_ != kNoZone && !wants(wanted, loading_) && !memory_.pinned(loading_)) cancel_load();
 }

@@ -28,7 +28,7 @@ ByteCount Residency::table_bytes(std::size_t zones) noexcept {
   return zones * (sizeof(Record) + 2 * sizeof(ZoneLink));
 }
 
-Residency::Residency(std::size_t zones, const ResidencyLimits& limits)
+Residency::Residency(std::size_t zones, const ResidencyLimits& limits, EvictionOrder* order)
     : limits_(limits),
       paid_slots_(slots_within(limits.budget, limits.fixed, limits.slot_bytes)),
       slot_count_(std::min(paid_slots_, limits.most_slots)),
@@ -37,7 +37,9 @@ Residency::Residency(std::size_t zones, const ResidencyLimits& limits)
       timer_links_(zones),
       evictable_(links_),
       leased_(links_),
-      lease_timers_(timer_links_) {
+      lease_timers_(timer_links_),
+      order_(order),
+      times_(order != nullptr ? zones : 0) {
   ZP_REQUIRE(limits.fixed <= limits.budget);
 }
 
@@ -86,9 +88,19 @@ Result<Eviction> Residency::drop(ZoneId zone) noexcept {
   return evict(zone);
 }
 
-Eviction Residency::evict_coldest() noexcept {
+void Residency::begin_cycle(const EvictionMoment& moment) noexcept {
+  if (order_ == nullptr) return;
+  now_ns_ = moment.now_ns;
+  order_->begin_cycle(moment);
+}
+
+Eviction Residency::evict_next(ZoneNeed wanted) noexcept {
   const ZoneId coldest = evictable_.coldest();
-  const ZoneId zone = coldest != kNoZone ? coldest : leased_.coldest();
+  ZoneId zone = coldest != kNoZone ? coldest : leased_.coldest();
+  if (order_ != nullptr && coldest != kNoZone) {
+    zone = order_->choose({evictable_, times_, wanted, limits_.slot_bytes});
+    ZP_REQUIRE(zone < records_.size() && records_[zone].list == List::kEvictable);
+  }
   ZP_REQUIRE(zone != kNoZone);
   return evict(zone);
 }
@@ -103,6 +115,7 @@ Eviction Residency::take_out(ZoneId zone) noexcept {
   Record& record = records_[zone];
   take_off_list(zone);
   end_leases(zone);
+  if (order_ != nullptr) order_->removed(zone);
   const Eviction eviction{zone, record.generation, record.need, record.slots};
   resident_.remove(record.need);
   discharge(record);
@@ -151,6 +164,10 @@ void Residency::fill(Record& record, ZoneId zone, const SlotChain& slots) noexce
   record.slots = slots;
   record.state = ZoneState::kResident;
   resident_.add(record.need);
+  if (order_ != nullptr) {
+    times_[zone] = {now_ns_, now_ns_};
+    order_->loaded(zone, record.need);
+  }
   put_on_list(zone);
 }
 
@@ -266,12 +283,16 @@ void Residency::put_on_list(ZoneId zone) noexcept {
   if (record.state != ZoneState::kResident || record.protected_ || record.pinned) return;
   record.list = record.leases > 0 ? List::kLeased : List::kEvictable;
   (record.list == List::kLeased ? leased_ : evictable_).append(zone, record.need);
+  if (order_ == nullptr || record.list == List::kLeased) return;
+  times_[zone].used_ns = now_ns_;
+  order_->released(zone);
 }
 
 void Residency::take_off_list(ZoneId zone) noexcept {
   Record& record = records_[zone];
   if (record.list == List::kNone) return;
   (record.list == List::kLeased ? leased_ : evictable_).remove(zone, record.need);
+  if (order_ != nullptr && record.list == List::kEvictable) order_->held(zone);
   record.list = List::kNone;
 }
 

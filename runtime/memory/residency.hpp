@@ -7,6 +7,7 @@
 
 #include "platform/base/byte_count.hpp"
 #include "platform/base/result.hpp"
+#include "runtime/memory/eviction_order.hpp"
 #include "runtime/memory/slot_pool.hpp"
 #include "runtime/memory/zone_list.hpp"
 #include "runtime/pack_format/ids.hpp"
@@ -70,11 +71,12 @@ struct ResidencyCounters {
 // Invariant: a resident zone is on exactly one list: evictable, leased, or (protected or pinned)
 // none; so what could be evicted is a running sum.
 // Real-time: no allocation after construction; every call is O(1), admit() O(1) for each zone
-// evicted.
+// evicted; with an order, plus what that states.
 // Threads: owned by the control thread.
 class Residency {
  public:
-  Residency(std::size_t zones, const ResidencyLimits& limits);
+  // order: who is evicted, in place of the least recently used; null: that. Outlives this object.
+  Residency(std::size_t zones, const ResidencyLimits& limits, EvictionOrder* order = nullptr);
   Residency(const Residency&) = delete;
   Residency& operator=(const Residency&) = delete;
 
@@ -88,7 +90,7 @@ class Residency {
     if (const Result<void> possible = check(zone, need, purpose); !possible)
       return possible.error();
     std::size_t evictions = 0;
-    for (; !fits(need, free()); ++evictions) on_evicted(evict_coldest());
+    for (; !fits(need, free()); ++evictions) on_evicted(evict_next(need));
     open(zone, need);
     return evictions;
   }
@@ -140,6 +142,13 @@ class Residency {
   // While frozen nothing is evicted: admit() returns kNoRoom where it would have to.
   void freeze(bool frozen) noexcept { frozen_ = frozen; }
   bool frozen() const noexcept { return frozen_; }
+
+  // For the order: a cycle begins, and a zone is wanted that was not before.
+  bool has_order() const noexcept { return order_ != nullptr; }
+  void begin_cycle(const EvictionMoment& moment) noexcept;
+  void request(ZoneId zone) noexcept {
+    if (order_ != nullptr) order_->requested(zone, resident(zone));
+  }
 
   // Marks a zone as most recently used.
   void touch(ZoneId zone) noexcept;
@@ -200,7 +209,7 @@ class Residency {
   Result<void> check(ZoneId zone, ZoneNeed need, Purpose purpose) const noexcept;
   bool fits(ZoneNeed need, NeedSum available) const noexcept;
   NeedSum free() const noexcept;
-  Eviction evict_coldest() noexcept;
+  Eviction evict_next(ZoneNeed wanted) noexcept;
   Eviction evict(ZoneId zone) noexcept;
   void open(ZoneId zone, ZoneNeed need) noexcept;
   void fill(Record& record, ZoneId zone, const SlotChain& slots) noexcept;
@@ -226,6 +235,9 @@ class Residency {
   std::uint64_t set_aside_slots_ = 0;  // of these, real ones
   bool frozen_ = false;
   ResidencyCounters counters_;
+  EvictionOrder* order_;
+  std::vector<ZoneTimes> times_;  // by ZoneId; empty without an order
+  std::int64_t now_ns_ = 0;       // of the cycle; 0 without an order
 };
 
 }  // namespace zonepack

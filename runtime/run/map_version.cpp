@@ -13,9 +13,14 @@ Outcome<std::shared_ptr<MapVersion>> MapVersion::make(std::uint32_t number, Cata
 }
 
 Outcome<void> MapVersion::prepare(const CycleConfig& config, ZoneLoader& loader, EventSink& events,
-                                  ZoneDirectory* directory) {
+                                  ZoneDirectory* directory, const EvictionOrderMaker& eviction) {
   const MapModel& map = *model_;
-  memory_.emplace(map.needs.size(), map.limits);
+  if (eviction) {
+    const ResidencyLimits& limits = map.limits;
+    eviction_ = eviction(
+        {map.needs, Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes)});
+  }
+  memory_.emplace(map.needs.size(), map.limits, eviction_.get());
   if (auto pinned = map.pin(*memory_); !pinned) return pinned;
   cycle_.emplace(config, CycleParts{.graph = map.graph,
                                     .needs = map.needs,

@@ -21,9 +21,9 @@ class MapVersion {
   static Outcome<std::shared_ptr<MapVersion>> make(std::uint32_t number, Catalog catalog,
                                                    const MapTerms& terms);
 
-  // Makes memory and cycle; all that is referred to outlives this object.
+  // Makes memory and cycle; all that is referred to outlives this object. eviction: null for LRU.
   Outcome<void> prepare(const CycleConfig& config, ZoneLoader& loader, EventSink& events,
-                        ZoneDirectory* directory);
+                        ZoneDirectory* directory, const EvictionOrderMaker& eviction = nullptr);
 
   std::uint32_t number() const noexcept { return number_; }
   const Catalog& catalog() const noexcept { return catalog_; }
@@ -41,6 +41,7 @@ class MapVersion {
   std::uint32_t number_;
   Catalog catalog_;
   std::unique_ptr<MapModel> model_;
+  std::unique_ptr<EvictionOrder> eviction_;
   std::optional<Residency> memory_;
   std::optional<Cycle> cycle_;
   std::optional<MapInUse> in_use_;

@@ -76,7 +76,8 @@ Outcome<std::shared_ptr<MapVersion>> Run::prepare(std::uint32_t number, Catalog 
 }
 
 Outcome<void> Run::prepare(MapVersion& map) const {
-  return map.prepare(plan_.cycle, ports_->loader, *ports_->queue, ports_->directory);
+  return map.prepare(plan_.cycle, ports_->loader, *ports_->queue, ports_->directory,
+                     plan_.eviction);
 }
 
 // Before what comes next is accounted for: it is of the map of this number.

@@ -27,6 +27,7 @@ struct RunPlan {
   const TruthTrack* truth = nullptr;  // for the statistics; outlives the run
   std::string events{};               // file of the event log; empty: none
   bool keep_trace = false;            // for drawing; grows with the run
+  EvictionOrderMaker eviction{};      // nothing: least recently used
 };
 
 // What a run works with; all of it outlives the run.

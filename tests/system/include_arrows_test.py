@@ -48,6 +48,7 @@ ARROWS = {
                     " runtime/settings runtime/state",
     "runtime/replay": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
                       " runtime/odometry runtime/pack_format runtime/recording runtime/run runtime/settings",
+    "runtime/evaluate/policies": "platform/base runtime/memory",
     "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
     "runtime/listen": "platform platform/base platform/sim runtime/calibrate runtime/live runtime/odometry runtime/run"
                       " runtime/settings",
