@@ -30,7 +30,9 @@ class LruShadow {
   std::uint64_t capacity() const noexcept { return capacity_; }
 
   // What its tables take from the budget.
-  static ByteCount table_bytes(std::size_t zones) noexcept { return zones * (sizeof(ZoneLink) + 1); }
+  static ByteCount table_bytes(std::size_t zones) noexcept {
+    return zones * (sizeof(ZoneLink) + 1);
+  }
 
  private:
   std::span<const ZoneNeed> needs_;

@@ -11,18 +11,19 @@
 
 namespace zonepack {
 
-// How soon each zone will be used, as far as can be told: for a zone z that is first entered T zones
-// from now, the expectation of kPerZone^T; 0 when z is out of sight.
+// How soon each zone will be used, as far as can be told: for a zone z that is first entered T
+// zones from now, the expectation of kPerZone^T; 0 when z is out of sight.
 //
-// Where a route is known, its zones come in its order, and what comes after its end is forecast from
-// there. A forecast is a walk at random through Transitions: the states are pairs of a zone and the
-// zone before it, the first kMostStates reachable ones in breadth-first order. The states' chances
-// are carried on kSteps times; in each step z is entered for the first time with the chance that it
-// is entered, times the chance that it was not entered earlier (the two are taken as independent).
-// What leads out of the states is lost, so what is farther away counts for less than it should.
+// Where a route is known, its zones come in its order, and what comes after its end is forecast
+// from there. A forecast is a walk at random through Transitions: the states are pairs of a zone
+// and the zone before it, the first kMostStates reachable ones in breadth-first order. The states'
+// chances are carried on kSteps times; in each step z is entered for the first time with the chance
+// that it is entered, times the chance that it was not entered earlier (the two are taken as
+// independent). What leads out of the states is lost, so what is farther away counts for less than
+// it should.
 //
-// The work can be spread over cycles with advance(); value() does what is left of it at once. So the
-// values do not depend on how it was spread.
+// The work can be spread over cycles with advance(); value() does what is left of it at once. So
+// the values do not depend on how it was spread.
 //
 // Real-time: no allocation. A whole forecast asks Transitions at most kMostStates times and does at
 // most kSteps * kMostStates * Successors::kMost additions, however large the map is.
