@@ -14,6 +14,9 @@ namespace {
 // After a fix of a localizer that sees ahead: longer than it usually goes without one.
 constexpr std::int64_t kViewHolds_ns = 30'000'000'000;
 constexpr double kMostView_m = 20;
+// How long before a zone is entered its path gives it away at least: a load that takes no longer is
+// not made earlier.
+constexpr double kPathGives_s = 0.5;
 
 // To the nearest thousandth, by arithmetic that gives the same on every machine.
 std::int32_t thousandths(double value) noexcept {
@@ -37,7 +40,11 @@ Cycle::Cycle(const CycleConfig& settings, const CycleParts& parts)
                    settings.keeper),
       markers_(parts.graph, settings.markers),
       dock_(settings.dock),
-      tracker_settings_(settings.tracker) {
+      tracker_settings_(settings.tracker),
+      transitions_(parts.transitions),
+      learns_(settings.preload.learn && parts.transitions != nullptr),
+      pays_(settings.preload.pays),
+      load_s_(parts.load_s) {
   state_.map = parts.map;
 }
 
@@ -92,15 +99,19 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
     replies_[reply_count_] = obey(command, now_ns);
     replies_[reply_count_++].id = command.id;
   }
-  follow_zones(zone_before);
+  follow_zones(zone_before, now_ns);
   if (memory_.has_order()) {
-    memory_.begin_cycle({now_ns, tracker_.zone(), zone_before_, {route_.data(), route_length_}});
+    memory_.begin_cycle({now_ns, tracker_.zone(), steps_.before(), route_ahead()});
   }
   const Wanted wanted = list_wanted();
   // The first is not the robot's own where that is of a layer that is not used.
   const bool own_first = tracker_.zone() == kNoZone || graph_.loadable(tracker_.zone());
-  zone_keeper_.keep(now_ns, {wanted.zones.data(), wanted.count}, wanted.urgent, wanted.needed,
-                    own_first && (!state_.lost || state_.pose.valid));
+  zone_keeper_.keep(now_ns, {{wanted.zones.data(), wanted.count},
+                             wanted.urgent,
+                             wanted.needed,
+                             wanted.useful,
+                             own_first && (!state_.lost || state_.pose.valid),
+                             &foresight_});
 
   state_.zone_resident = state_.zone != kNoZone && memory_.resident(state_.zone);
   state_.map_ready = state_.pose.trusted && state_.zone_resident;
@@ -265,17 +276,67 @@ CommandReply Cycle::obey(const Command& command, std::int64_t now_ns) noexcept {
       for (std::size_t i = 0; i < command.route_length && i < route_.size(); ++i) {
         if (exists(command.route[i])) route_[route_length_++] = command.route[i];
       }
+      route_place_ = 0;
+      step_on_route();
+      foresee();
       break;
   }
   return reply;
 }
 
-void Cycle::follow_zones(ZoneId before) noexcept {
+// The robot's zone on the route, searched from where it was: a route may lead through a zone twice.
+void Cycle::step_on_route() noexcept {
+  const auto end = route_.begin() + static_cast<std::ptrdiff_t>(route_length_);
+  const auto from = route_.begin() + static_cast<std::ptrdiff_t>(route_place_);
+  auto place = std::find(from, end, tracker_.zone());
+  if (place == end) place = std::find(route_.begin(), from, tracker_.zone());
+  if (place == from && tracker_.zone() != *from) return;  // off the route, or none
+  if (place != from || from != end) route_place_ = static_cast<std::size_t>(place - route_.begin());
+}
+
+void Cycle::learn_step(std::int64_t t_ns) noexcept {
+  const ZoneSteps::Step* const step = steps_.enter(graph_, tracker_.zone(), t_ns);
+  if (step != nullptr && learns_) {
+    transitions_->learn(step->before, step->now, step->next, step->stay_ns);
+  }
+}
+
+// Which zones may come, and which of them are worth loading before they are approached. In the
+// order in which they are trusted: the route, then what was learned.
+void Cycle::foresee() noexcept {
+  likely_count_ = 0;
+  foresight_.clear();
+  const ZoneId own = tracker_.zone();
+  const std::span<const ZoneId> ahead = route_ahead();
+  if (!ahead.empty()) {
+    foresight_.follow(ahead, steps_.before(), own, transitions_);
+  } else if (transitions_ != nullptr && own != kNoZone) {
+    foresight_.look(*transitions_, steps_.before(), own);
+  }
+  for (const Coming& coming : foresight_.coming()) {
+    if (likely_count_ == likely_.size()) break;
+    if (coming.zone == own || !graph_.loadable(coming.zone)) continue;
+    const double share = static_cast<double>(coming.share);
+    const double load_s = static_cast<double>(load_s_[coming.zone]);
+    // What its path alone would leave the robot to wait for, against the reading that may be for
+    // nothing: both grow with the zone's bytes.
+    const double saved_s = share * (load_s - kPathGives_s);
+    if (ahead.empty() && saved_s < pays_ * (1 - share) * load_s) continue;
+    if (ahead.empty() && saved_s <= 0) continue;
+    likely_[likely_count_++] = coming.zone;
+  }
+  // The destination, however far, takes the last place.
+  if (!ahead.empty() && likely_count_ == likely_.size()) likely_.back() = ahead.back();
+}
+
+void Cycle::follow_zones(ZoneId before, std::int64_t now_ns) noexcept {
   tracker_.update(state_.pose);
   if (tracker_.zone() != before) {
-    if (before != kNoZone) zone_before_ = before;
     state_.zone = tracker_.zone();
     emit(EventKind::kZoneEntered, state_.zone);
+    learn_step(now_ns);
+    step_on_route();
+    foresee();
     if (before != kNoZone && state_.zone != kNoZone) {
       ++state_.zone_switches;
       if (graph_.loadable(state_.zone) && !memory_.resident(state_.zone)) {
@@ -315,6 +376,8 @@ Cycle::Wanted Cycle::list_wanted() const noexcept {
   want_route(wanted);
   wanted.needed = wanted.count;
   want_view(wanted);
+  wanted.useful = wanted.count;
+  for (std::size_t i = 0; i < likely_count_; ++i) wanted.add(likely_[i]);
   return wanted;
 }
 
@@ -327,9 +390,14 @@ void Cycle::want_view(Wanted& wanted) const noexcept {
 
 // The next two zones of a hinted route, while the robot is on it.
 void Cycle::want_route(Wanted& wanted) const noexcept {
-  const auto end = route_.begin() + static_cast<std::ptrdiff_t>(route_length_);
-  auto next = std::find(route_.begin(), end, tracker_.zone());
-  for (int ahead = 0; ahead < 2 && next != end && ++next != end; ++ahead) wanted.add(*next);
+  const std::span<const ZoneId> ahead = route_ahead();
+  for (std::size_t i = 0; i < 2 && i < ahead.size(); ++i) wanted.add(ahead[i]);
+}
+
+// The zones of the route after the robot's own; none when it is not on the route.
+std::span<const ZoneId> Cycle::route_ahead() const noexcept {
+  if (route_place_ >= route_length_ || route_[route_place_] != tracker_.zone()) return {};
+  return {route_.data() + route_place_ + 1, route_length_ - route_place_ - 1};
 }
 
 void Cycle::go_on_from(const Cycle& other) noexcept {
@@ -346,6 +414,9 @@ void Cycle::go_on_from(const Cycle& other) noexcept {
   start_ns_ = other.start_ns_;
   view_m_ = other.view_m_;
   view_until_ns_ = other.view_until_ns_;
+  if (transitions_ != nullptr && other.transitions_ != nullptr) {
+    transitions_->take_over(*other.transitions_);
+  }
   freeze(other.frozen_, other.held_);
   events_.begin_cycle(state_.cycles - 1, other.events_.t_ns());
 }

@@ -18,8 +18,10 @@
 #include "runtime/odometry/pose.hpp"
 #include "runtime/odometry/pose_filter.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
+#include "runtime/zones/foresight.hpp"
 #include "runtime/zones/preload.hpp"
 #include "runtime/zones/tracker.hpp"
+#include "runtime/zones/transitions.hpp"
 #include "runtime/zones/zone_graph.hpp"
 #include "runtime/zones/zone_markers.hpp"
 
@@ -50,6 +52,7 @@ struct CycleParts {
   EventSink& events;
   ZoneDirectory* directory = nullptr;  // where readers find resident zones
   std::uint32_t map = 1;               // number in the run of the map that all this belongs to
+  Transitions* transitions = nullptr;  // what is known of the robot's habits; null: nothing
 };
 
 // Another map on offer: its number in this run, or why one that was to be offered cannot be used.
@@ -99,6 +102,8 @@ struct CycleState {
 class Cycle {
  public:
   static constexpr std::size_t kMostCommands = 16;
+  // Zones that are loaded because of what is likely, or farther on a route.
+  static constexpr std::size_t kMostLikely = 8;
 
   Cycle(const CycleConfig& settings, const CycleParts& parts);
 
@@ -149,18 +154,23 @@ class Cycle {
   void find_pose() noexcept;
   void watch_odometry(std::int64_t now_ns) noexcept;
   CommandReply obey(const Command& command, std::int64_t now_ns) noexcept;
-  void follow_zones(ZoneId before) noexcept;
+  void follow_zones(ZoneId before, std::int64_t now_ns) noexcept;
   struct Wanted {
     std::array<ZoneId, ZoneKeeper::kMaxWanted> zones{};
     std::size_t count = 0;
     std::size_t urgent = 0;
     std::size_t needed = 0;
+    std::size_t useful = 0;
     const ZoneGraph* graph = nullptr;
     void add(ZoneId zone) noexcept;
   };
   Wanted list_wanted() const noexcept;
   void want_route(Wanted& wanted) const noexcept;
   void want_view(Wanted& wanted) const noexcept;
+  std::span<const ZoneId> route_ahead() const noexcept;
+  void step_on_route() noexcept;
+  void learn_step(std::int64_t t_ns) noexcept;
+  void foresee() noexcept;
   void emit(EventKind kind, ZoneId zone = kNoZone, const char* reason = nullptr) noexcept;
 
   const ZoneGraph& graph_;
@@ -178,10 +188,18 @@ class Cycle {
   CycleState state_;
   std::array<ZoneId, Command::kMostRoute> route_{};
   std::size_t route_length_ = 0;
+  std::size_t route_place_ = 0;  // of the robot's zone on the route; route_length_: not on it
+  Transitions* transitions_;
+  bool learns_;
+  double pays_;
+  std::span<const float> load_s_;
+  ZoneSteps steps_;
+  Foresight foresight_;
+  std::array<ZoneId, kMostLikely> likely_{};  // to be loaded before they are approached
+  std::size_t likely_count_ = 0;
   std::array<CommandReply, kMostCommands> replies_{};
   std::size_t reply_count_ = 0;
   std::int64_t start_ns_ = 0;
-  ZoneId zone_before_ = kNoZone;    // that the robot came from
   double view_m_ = 0;               // how far a localizer sees that gave a fix …
   std::int64_t view_until_ns_ = 0;  // … lately
   bool frozen_ = false;             // by command

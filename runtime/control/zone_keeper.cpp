@@ -69,18 +69,19 @@ void ZoneKeeper::fail(ZoneId zone, ErrorCode code, std::int64_t now_ns) noexcept
   emit(EventKind::kLoadFailed, zone, to_string(code));
 }
 
-void ZoneKeeper::keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent,
-                      std::size_t needed, bool with_own) noexcept {
+ZoneKeeper::Demand ZoneKeeper::demand_of(std::size_t place, const Wishes& wishes) noexcept {
+  if (place == 0 && wishes.with_own) return Demand::kOwn;
+  if (place < wishes.urgent) return Demand::kUrgent;
+  if (place < wishes.needed) return Demand::kPossible;
+  return place < wishes.useful ? Demand::kUseful : Demand::kLikely;
+}
+
+void ZoneKeeper::keep(std::int64_t now_ns, const Wishes& wishes) noexcept {
+  const std::span<const ZoneId> wanted = wishes.zones;
   ZP_REQUIRE(wanted.size() <= kMaxWanted);
   drop_unwanted(wanted);
   does_not_fit_ = kNoZone;
-  for (std::size_t place = 0; place < wanted.size(); ++place) {
-    const Demand demand = place == 0 && with_own ? Demand::kOwn
-                          : place < urgent       ? Demand::kUrgent
-                          : place < needed       ? Demand::kPossible
-                                                 : Demand::kUseful;
-    see_to(place, wanted, demand, place < urgent || place >= needed, now_ns);
-  }
+  for (std::size_t place = 0; place < wanted.size(); ++place) see_to(place, wishes, now_ns);
   keep_pinned(now_ns);
   set_blocked(does_not_fit_);
   std::copy(wanted.begin(), wanted.end(), wanted_.begin());
@@ -107,23 +108,55 @@ void ZoneKeeper::drop_unwanted(std::span<const ZoneId> wanted) noexcept {
   if (loading_ != kNoZone && !wants(wanted, loading_) && !memory_.pinned(loading_)) cancel_load();
 }
 
-void ZoneKeeper::see_to(std::size_t place, std::span<const ZoneId> wanted, Demand demand,
-                        bool takes_room, std::int64_t now_ns) noexcept {
+void ZoneKeeper::see_to(std::size_t place, const Wishes& wishes, std::int64_t now_ns) noexcept {
+  const std::span<const ZoneId> wanted = wishes.zones;
   const ZoneId zone = wanted[place];
-  if (zone == loading_) loads_useful_ = demand == Demand::kUseful;
+  const Demand demand = demand_of(place, wishes);
+  if (zone == loading_) loads_useful_ = demand <= Demand::kUseful;
+  if (demand == Demand::kLikely) return see_to_likely(zone, *wishes.foresight, now_ns);
   memory_.protect(zone);
   if (memory_.state(zone) != ZoneState::kAbsent || !may_start(zone, demand, now_ns)) return;
   const Purpose purpose = demand == Demand::kOwn ? Purpose::kOwnZone : Purpose::kApproach;
   bool admitted = admit(zone, purpose).ok();
-  if (!admitted && takes_room) {
+  if (!admitted && demand != Demand::kPossible) {
     for (std::size_t i = wanted.size(); --i > place;) memory_.unprotect(wanted[i]);
     admitted = admit(zone, purpose).ok();
   }
   if (admitted) {
     loads_useful_ = demand == Demand::kUseful;
-  } else if (does_not_fit_ == kNoZone && demand != Demand::kUseful) {
+  } else if (does_not_fit_ == kNoZone && demand > Demand::kUseful) {
     does_not_fit_ = zone;
   }
+}
+
+void ZoneKeeper::see_to_likely(ZoneId zone, const Foresight& foresight,
+                               std::int64_t now_ns) noexcept {
+  memory_.unprotect(zone);  // it may have been more
+  if (loading_ != kNoZone || memory_.state(zone) != ZoneState::kAbsent) return;
+  if (!may_start(zone, Demand::kLikely, now_ns) || !make_colder_room(zone, foresight)) return;
+  loads_useful_ = admit(zone, Purpose::kApproach).ok();
+}
+
+// Whether the zone fits, if need be once zones are evicted that are worth less: the least recently
+// used first, and none of them unless they are enough.
+bool ZoneKeeper::make_colder_room(ZoneId zone, const Foresight& foresight) noexcept {
+  std::array<ZoneId, kMaxWanted> colder;
+  std::size_t count = 0;
+  NeedSum room = memory_.room();
+  const ZoneNeed need = needs_[zone];
+  const auto fits = [&] { return need.slots <= room.slots && need.signatures <= room.signatures; };
+  const float worth = foresight.worth(zone);
+  if (!memory_.frozen()) {
+    for (ZoneId other = memory_.coldest(); other != kNoZone && !fits() && count < colder.size();
+         other = memory_.warmer(other)) {
+      if (foresight.worth(other) >= worth) continue;
+      colder[count++] = other;
+      room.add(needs_[other]);
+    }
+  }
+  if (!fits()) return false;
+  for (std::size_t i = 0; i < count; ++i) drop(colder[i]);
+  return true;
 }
 
 bool ZoneKeeper::may_start(ZoneId zone, Demand demand, std::int64_t now_ns) noexcept {

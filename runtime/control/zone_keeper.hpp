@@ -11,6 +11,7 @@
 #include "runtime/control/zone_loader.hpp"
 #include "runtime/memory/residency.hpp"
 #include "runtime/memory/zone_directory.hpp"
+#include "runtime/zones/foresight.hpp"
 
 namespace zonepack {
 
@@ -50,11 +51,22 @@ class ZoneKeeper {
   Result<void> pin(ZoneId zone) noexcept;
   void unpin(ZoneId zone) noexcept;
 
-  // Takes what is wanted in this cycle, most urgent first, no zone twice, at most kMaxWanted. The
-  // first is the robot's own zone, if with_own; those after the first `urgent` are only possible,
-  // and those after the first `needed` only useful: they take what room there is and block nothing.
+  // What is wanted in a cycle.
+  struct Wishes {
+    std::span<const ZoneId> zones{};  // most urgent first, no zone twice, at most kMaxWanted
+    std::size_t urgent = 0;           // those after the first so many are only possible,
+    std::size_t needed = 0;  // those after these only useful: they take what room there is and
+                             // block nothing,
+    std::size_t useful = 0;  // and those after these only likely: they take free room, and that of
+                             // zones that foresight says are worth less
+    bool with_own = true;    // the first is the robot's own zone
+    const Foresight* foresight = nullptr;  // needed for likely ones
+  };
+  void keep(std::int64_t now_ns, const Wishes& wishes) noexcept;
   void keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent,
-            std::size_t needed, bool with_own = true) noexcept;
+            std::size_t needed, bool with_own = true) noexcept {
+    keep(now_ns, {wanted, urgent, needed, wanted.size(), with_own});
+  }
   void keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent) noexcept {
     keep(now_ns, wanted, urgent, wanted.size());
   }
@@ -89,9 +101,11 @@ class ZoneKeeper {
 
   bool wants(std::span<const ZoneId> list, ZoneId zone) const noexcept;
   void drop_unwanted(std::span<const ZoneId> wanted) noexcept;
-  enum class Demand : std::uint8_t { kUseful, kPossible, kUrgent, kOwn };
-  void see_to(std::size_t place, std::span<const ZoneId> wanted, Demand demand, bool takes_room,
-              std::int64_t now_ns) noexcept;
+  enum class Demand : std::uint8_t { kLikely, kUseful, kPossible, kUrgent, kOwn };
+  static Demand demand_of(std::size_t place, const Wishes& wishes) noexcept;
+  void see_to(std::size_t place, const Wishes& wishes, std::int64_t now_ns) noexcept;
+  void see_to_likely(ZoneId zone, const Foresight& foresight, std::int64_t now_ns) noexcept;
+  bool make_colder_room(ZoneId zone, const Foresight& foresight) noexcept;
   bool may_start(ZoneId zone, Demand demand, std::int64_t now_ns) noexcept;
   void keep_pinned(std::int64_t now_ns) noexcept;
   Result<std::size_t> admit(ZoneId zone, Purpose purpose) noexcept;
@@ -113,7 +127,7 @@ class ZoneKeeper {
   std::size_t wanted_count_ = 0;
   bool held_ = false;
   ZoneId loading_ = kNoZone;
-  bool loads_useful_ = false;  // what is loading is only useful
+  bool loads_useful_ = false;  // what is loading is only useful or likely
   ZoneId blocked_ = kNoZone;
   ZoneId does_not_fit_ = kNoZone;  // the most urgent one of this cycle
 };

@@ -81,7 +81,10 @@ class Check {
   }
 
   bool budget() {
-    auto model = MapModel::make(inputs_.catalog, map_terms(arguments_, inputs_.settings));
+    const MapTerms terms = map_terms(arguments_, inputs_);
+    const ByteCount habits = extra_fixed_bytes(inputs_.catalog, terms);
+    inputs_.catalog.fixed_bytes += habits;
+    auto model = MapModel::make(inputs_.catalog, terms);
     if (!model) {
       refuse("budget", model.error().message);
       return false;
@@ -92,6 +95,9 @@ class Check {
     } else {
       good("budget",
            short_bytes(map_->limits.budget) + " (" + counted(map_->limits.budget, "byte") + ")");
+    }
+    if (habits > 0) {
+      good("transitions", counted(habits, "byte") + " of the budget, for what zones come next");
     }
     Residency trial(map_->needs.size(), map_->limits);
     if (const auto pinned = map_->pin(trial); !pinned) {

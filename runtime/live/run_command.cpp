@@ -88,7 +88,7 @@ Outcome<void> conclude(const RunArguments& arguments, LiveRun& run) {
 // The run, from what was read of it to its end.
 Outcome<void> drive(const RunArguments& arguments, RunInputs& inputs,
                     std::vector<HandedFile>& handed, EndGuard& guard) {
-  MapTerms terms = map_terms(arguments, inputs.settings);
+  MapTerms terms = map_terms(arguments, inputs);
   terms.lease_ns = static_cast<std::int64_t>(inputs.settings.serve.lease_s * 1e9);
   auto map = MapVersion::make(1, std::move(inputs.catalog), terms);
   if (!map) return map.error();

@@ -179,6 +179,8 @@ class Residency {
   const NeedSum& used_sum() const noexcept { return used_; }
   // Of that, the part that is decoded and usable.
   const NeedSum& resident_sum() const noexcept { return resident_; }
+  // What fits without evicting anything.
+  NeedSum room() const noexcept { return free(); }
   const ResidencyLimits& limits() const noexcept { return limits_; }
   const ResidencyCounters& counters() const noexcept { return counters_; }
   // Operations on lists and chains so far: each eviction adds the same number.

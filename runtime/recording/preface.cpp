@@ -2,7 +2,9 @@
 #include "runtime/recording/preface.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <string_view>
+#include <utility>
 
 #include "platform/base/require.hpp"
 #include "runtime/recording/block.hpp"
@@ -22,6 +24,7 @@ enum class Field : std::uint8_t {
   kPinned = 8,
   kStart = 9,
   kDbc = 10,
+  kTransitions = 11,
 };
 
 constexpr std::size_t kBlockContent = std::size_t{512} * 1024;
@@ -37,6 +40,7 @@ std::size_t room_for(const RecordingPreface& preface) {
   std::size_t room = kPrefaceRoom + preface.program.size() + preface.settings_path.size() +
                      preface.settings.size() + preface.dbc.size() + preface.map_folder.size() +
                      preface.manifest.size();
+  if (preface.terms.learned) room += write_transitions(*preface.terms.learned).size();
   for (const std::string& name : preface.terms.pinned) room += kPrefaceRoom + name.size();
   return room;
 }
@@ -73,6 +77,10 @@ void put_all(const RecordingPreface& preface, ByteWriter& out) {
     field.i64(terms.period_ns);
     field.i64(terms.lease_ns);
   });
+  if (preface.terms.learned) {
+    const std::vector<std::byte> learned = write_transitions(*preface.terms.learned);
+    put(out, Field::kTransitions, ByteSpan(learned));
+  }
   for (const std::string& name : preface.terms.pinned) put(out, Field::kPinned, bytes_of(name));
   if (!preface.start) return;
   put(out, Field::kStart, [&](ByteWriter& field) {
@@ -151,6 +159,13 @@ Result<void> read_field(std::uint8_t kind, ByteSpan bytes, RecordingPreface& pre
     case Field::kPinned:
       preface.terms.pinned.push_back(text_of(bytes));
       break;
+    case Field::kTransitions: {
+      auto learned = read_transitions(bytes);
+      good = learned.ok();
+      if (!good) break;
+      preface.terms.learned = std::make_shared<LearnedTransitions>(std::move(learned).value());
+      break;
+    }
     case Field::kStart:
       good = read_start(ByteReader(bytes), preface.start);
       break;

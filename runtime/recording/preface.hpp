@@ -13,6 +13,7 @@
 #include "runtime/recording/bytes.hpp"
 #include "runtime/run/map_model.hpp"
 #include "runtime/run/run_start.hpp"
+#include "runtime/zones/transitions_file.hpp"
 
 namespace zonepack {
 

@@ -33,21 +33,30 @@ Outcome<Catalog> catalog_of(const RecordingReader& recording, const Settings& se
   return std::move(catalog).value();
 }
 
+MapTerms recorded_terms(const RecordingReader& recording, const Settings& settings) {
+  MapTerms terms = recording.preface().terms;
+  terms.habits = has_habits(settings);
+  return terms;
+}
+
 // Feeds a recording to a run.
 class RecordedDrive {
  public:
   RecordedDrive(RecordingReader& recording, const RecordedRun& recorded,
-                const std::string& events_path, std::shared_ptr<MapVersion> map)
+                const std::string& events_path, std::shared_ptr<MapVersion> map,
+                RunObserver* observer)
       : recording_(recording),
         settings_(recorded.settings),
         exact_(!recording.checkpoint()),
         recorded_(map->catalog()),
         modelled_(map->catalog(), recording.preface().terms.rates),
         run_({.cycle = cycle_config(settings_),
-              .terms = recording.preface().terms,
+              .terms = recorded_terms(recording, settings_),
               .events = events_path,
               .keep_trace = true},
-             std::move(map)) {}
+             std::move(map)) {
+    if (observer != nullptr) run_.add_observer(*observer);
+  }
 
   Outcome<RecordedRunResult> drive();
 
@@ -250,8 +259,8 @@ Outcome<RecordedRun> open_recorded_run(const RecordingPreface& preface) {
 }
 
 Outcome<RecordedRunResult> replay_recording(RecordingReader& recording, const RecordedRun& run,
-                                            const std::string& events_path) {
-  const MapTerms& terms = recording.preface().terms;
+                                            const std::string& events_path, RunObserver* observer) {
+  const MapTerms terms = recorded_terms(recording, run.settings);
   auto map = MapVersion::make(1, run.catalog, terms);
   if (!map) return map.error();
   const std::uint32_t in_use = recording.checkpoint() ? recording.checkpoint()->map : 1;
@@ -261,7 +270,7 @@ Outcome<RecordedRunResult> replay_recording(RecordingReader& recording, const Re
     map = MapVersion::make(in_use, std::move(*catalog), (*map)->model().terms_of_next(terms));
     if (!map) return map.error();
   }
-  return RecordedDrive(recording, run, events_path, std::move(*map)).drive();
+  return RecordedDrive(recording, run, events_path, std::move(*map), observer).drive();
 }
 
 }  // namespace zonepack

@@ -30,9 +30,10 @@ Outcome<RecordedRun> open_recorded_run(const RecordingPreface& preface);
 // Drives what was recorded through a run. From its beginning, the events are those of the run,
 // byte for byte. From a checkpoint, the run goes on as from a guess: loads take the time of the
 // model, and until the first fixes decisions may differ from those of the run.
-// Fails, naming the cycle, when the recording contradicts itself or the cycle (another program
-// version, a forged file).
+// observer: watches; may be null. Fails, naming the cycle, when the recording contradicts itself or
+// the cycle (another program version, a forged file).
 Outcome<RecordedRunResult> replay_recording(RecordingReader& recording, const RecordedRun& run,
-                                            const std::string& events_path);
+                                            const std::string& events_path,
+                                            RunObserver* observer = nullptr);
 
 }  // namespace zonepack

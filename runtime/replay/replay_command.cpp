@@ -36,7 +36,7 @@ ReplayInput replay_input(const ReplayArguments& arguments, RunInputs& inputs, Ca
   input.start = arguments.start;
   input.cycle = cycle_config(settings);
   input.most_frames = settings.cycle.most_frames;
-  input.terms = map_terms(arguments, settings);
+  input.terms = map_terms(arguments, inputs);
   input.events_path = arguments.events;
   return input;
 }

@@ -73,6 +73,12 @@ Outcome<void> check_default(const Catalog& catalog, const MapTerms& terms,
 }  // namespace
 
 Outcome<std::unique_ptr<MapModel>> MapModel::make(const Catalog& catalog, const MapTerms& terms) {
+  if (terms.learned && terms.learned->map_lineage != catalog.lineage) {
+    return failure("preload.transitions: was learned on another map (lineage " +
+                       to_hex(terms.learned->map_lineage) + "; that of " + catalog.folder + " is " +
+                       to_hex(catalog.lineage) + "); learn it on this one (zoned learn)",
+                   ErrorCode::kMismatch);
+  }
   auto pinned = find_pins(catalog, terms.pinned);
   if (!pinned) return pinned.error();
   ResidencyLimits limits = limits_for(catalog, terms.budget, terms.max_signatures, *pinned);
@@ -103,8 +109,13 @@ ByteCount MapModel::room_for_next() const noexcept {
   return limits.budget - std::min(limits.budget, held) + charged_reading(catalog) + kFreeMapBytes;
 }
 
+ByteCount extra_fixed_bytes(const Catalog& catalog, const MapTerms& terms) noexcept {
+  return terms.habits ? Transitions::table_bytes(catalog.zones.size(), catalog.portals.size()) : 0;
+}
+
 MapTerms MapModel::terms_of_next(const MapTerms& terms) const {
   MapTerms next = terms;
+  next.learned = nullptr;  // the cycle takes over what the one before it knows
   next.budget = limits.budget;
   next.slots = slots;
   return next;

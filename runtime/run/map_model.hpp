@@ -11,6 +11,7 @@
 #include "runtime/map/catalog.hpp"
 #include "runtime/memory/residency.hpp"
 #include "runtime/run/modelled_loader.hpp"
+#include "runtime/zones/transitions_file.hpp"
 #include "runtime/zones/zone_graph.hpp"
 
 namespace zonepack {
@@ -25,7 +26,12 @@ struct MapTerms {
   std::int64_t period_ns = 10'000'000;
   std::int64_t lease_ns = 0;
   std::optional<std::uint32_t> slots{};  // that there are; nothing: as many as are of use
+  bool habits = false;  // a table of Transitions is held, with what was learned, unless null
+  std::shared_ptr<const LearnedTransitions> learned{};
 };
+
+// What holding a map on these terms takes besides what the catalog charges.
+ByteCount extra_fixed_bytes(const Catalog& catalog, const MapTerms& terms) noexcept;
 
 // A map in the shape in which the cycle takes it, with the limits to hold. Immutable; the catalog
 // must outlive it.

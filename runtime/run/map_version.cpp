@@ -5,10 +5,15 @@ namespace zonepack {
 
 Outcome<std::shared_ptr<MapVersion>> MapVersion::make(std::uint32_t number, Catalog catalog,
                                                       const MapTerms& terms) {
+  catalog.fixed_bytes += extra_fixed_bytes(catalog, terms);
   std::shared_ptr<MapVersion> map(new MapVersion(number, std::move(catalog)));
   auto model = MapModel::make(map->catalog_, terms);
   if (!model) return model.error();
   map->model_ = std::move(*model);
+  if (terms.habits) {
+    map->transitions_.emplace(map->model_->graph);
+    if (terms.learned) restore(*terms.learned, *map->transitions_);
+  }
   return map;
 }
 
@@ -30,7 +35,8 @@ Outcome<void> MapVersion::prepare(const CycleConfig& config, ZoneLoader& loader,
                                     .loader = loader,
                                     .events = events,
                                     .directory = directory,
-                                    .map = number_});
+                                    .map = number_,
+                                    .transitions = transitions_ ? &*transitions_ : nullptr});
   in_use_.emplace(MapInUse{.catalog = catalog_,
                            .graph = map.graph,
                            .needs = map.needs,

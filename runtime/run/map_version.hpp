@@ -29,6 +29,11 @@ class MapVersion {
   const Catalog& catalog() const noexcept { return catalog_; }
   const MapModel& model() const noexcept { return *model_; }
 
+  // Null unless the terms ask for it; belongs to the control thread with the cycle.
+  const Transitions* transitions() const noexcept {
+    return transitions_ ? &*transitions_ : nullptr;
+  }
+
   // After prepare().
   Residency& memory() noexcept { return *memory_; }
   Cycle& cycle() noexcept { return *cycle_; }
@@ -41,6 +46,7 @@ class MapVersion {
   std::uint32_t number_;
   Catalog catalog_;
   std::unique_ptr<MapModel> model_;
+  std::optional<Transitions> transitions_;
   std::unique_ptr<EvictionOrder> eviction_;
   std::optional<Residency> memory_;
   std::optional<Cycle> cycle_;

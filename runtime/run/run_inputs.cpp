@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "platform/board.hpp"
+#include "platform/storage.hpp"
 #include "runtime/odometry/det_math.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 
@@ -63,6 +64,12 @@ Outcome<RunInputs> read_run_inputs(const RunChoices& choices) {
     return chosen.error();
   }
   inputs.catalog = std::move(catalog).value();
+  if (!inputs.settings.preload.transitions.empty()) {
+    auto learned = load_transitions(inputs.settings.preload.transitions);
+    if (!learned)
+      return Failure{learned.error().code, "preload.transitions: " + learned.error().message};
+    inputs.learned = std::make_shared<LearnedTransitions>(std::move(*learned));
+  }
 
   if (!choices.truth.empty()) {
     auto truth = read_truth(choices.truth);
@@ -111,7 +118,28 @@ CycleConfig cycle_config(const Settings& settings) {
   return config;
 }
 
-MapTerms map_terms(const RunChoices& choices, const Settings& settings) {
+bool has_habits(const Settings& settings) {
+  return settings.preload.learn || !settings.preload.transitions.empty();
+}
+
+Outcome<LearnedTransitions> load_transitions(const std::string& path) {
+  const auto file = read_file(path, kMostTransitionsBytes);
+  if (!file) {
+    const bool large = file.error().code == ErrorCode::kTooLarge;
+    return failure(path + ": " +
+                       (large ? "is over " + format_byte_count(kMostTransitionsBytes)
+                              : reason_text(file.error())) +
+                       "; expected a file of transitions, as zoned learn writes it",
+                   file.error().code);
+  }
+  std::string why;
+  auto learned = read_transitions(*file, &why);
+  if (!learned) return failure(path + ": " + why, learned.error().code);
+  return std::move(learned).value();
+}
+
+MapTerms map_terms(const RunChoices& choices, const RunInputs& inputs) {
+  const Settings& settings = inputs.settings;
   MapTerms terms;
   terms.budget = choices.budget ? choices.budget : settings.memory.budget;
   terms.default_most = default_budget_limit();
@@ -121,6 +149,8 @@ MapTerms map_terms(const RunChoices& choices, const Settings& settings) {
       static_cast<std::uint64_t>(settings.loading.expected_storage_rate()));
   terms.rates.decode = static_cast<std::uint64_t>(settings.loading.decode_rate);
   terms.period_ns = static_cast<std::int64_t>(1e9 / settings.cycle.period_hz + 0.5);
+  terms.habits = has_habits(settings);
+  terms.learned = inputs.learned;
   return terms;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,7 +36,8 @@ struct RunInputs {
   std::vector<PoseCorrection> corrections;
   std::vector<TimedCommand> commands;  // from the file of corrections
   std::optional<TruthTrack> truth;
-  std::vector<std::string> warnings;  // for people
+  std::shared_ptr<const LearnedTransitions> learned;  // of preload.transitions; null: not given
+  std::vector<std::string> warnings;                  // for people
 };
 
 // Fails at the first thing that is wrong.
@@ -45,6 +47,12 @@ Outcome<RunInputs> read_run_inputs(const RunChoices& choices);
 ByteCount default_budget_limit();
 
 CycleConfig cycle_config(const Settings& settings);
-MapTerms map_terms(const RunChoices& choices, const Settings& settings);
+// Whether a run by these settings holds a table of Transitions.
+bool has_habits(const Settings& settings);
+// With `learned` of the inputs.
+MapTerms map_terms(const RunChoices& choices, const RunInputs& inputs);
+
+// A file as zoned learn writes it. Failures name it.
+Outcome<LearnedTransitions> load_transitions(const std::string& path);
 
 }  // namespace zonepack

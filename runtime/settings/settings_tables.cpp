@@ -98,6 +98,15 @@ const Fields<PreloadSettings>& preload_fields() {
       {"most_turn", &S::most_turn_rad, 0, 6.3, "rad",
        "how far the present arc is followed; then the path goes on straight"},
       {"most_reach", &S::most_reach_m, 0, 1000, "m", "how far any path is followed"},
+      {"transitions", &S::transitions, 0, 0, "",
+       "file of what zoned learn counted, by which zones are loaded that are likely to come; "
+       "empty: none"},
+      {"learn", &S::learn, 0, 0, "",
+       "go on counting while the robot drives; kept in state.folder; without transitions it begins "
+       "with nothing"},
+      {"pays", &S::pays, 0, 100, "",
+       "a likely zone is loaded when that saves so many seconds of waiting for each second of "
+       "reading that may be for nothing"},
   };
   return fields;
 }

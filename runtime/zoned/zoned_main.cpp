@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // zoned: the robot's program. Wiring only; `replay` lives in runtime/replay, `run` in runtime/live,
-// `listen` in runtime/listen, `calibrate` in runtime/calibrate.
+// `listen` in runtime/listen, `calibrate` in runtime/calibrate, `learn` in runtime/learn.
 #include <CLI/CLI.hpp>
 #include <functional>
 
@@ -8,6 +8,7 @@
 #include "platform/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/calibrate/calibrate_command.hpp"
+#include "runtime/learn/learn_command.hpp"
 #include "runtime/listen/listen_command.hpp"
 #include "runtime/live/can_source.hpp"
 #include "runtime/live/check_command.hpp"
@@ -224,6 +225,44 @@ void add_calibrate(CLI::App& app, zonepack::CalibrateArguments& arguments, Comma
                   "zoned calibrate --config robot.yaml --can drive.log --truth path.txt --json -"});
 }
 
+void add_learn(CLI::App& app, zonepack::LearnArguments& arguments, Command& command) {
+  CLI::App& learn =
+      *app.add_subcommand("learn", "counts which zone comes after which, for preload.transitions");
+  learn
+      .add_option("DRIVE", arguments.drives,
+                  "recordings (zoned run --record, a flight folder), or text files of lines "
+                  "`stamp zone`; the oldest first")
+      ->type_name("FILE");
+  learn.add_option("--map", arguments.map, "map folder")->type_name("DIR")->required();
+  add_file(learn, "--out", arguments.out, "the file to write (.zpt)")->required();
+  add_file(learn, "--config", arguments.config, "settings of the robot (YAML), for --can");
+  learn.add_option("--can", arguments.can, "CAN logs, newer than every DRIVE; the oldest first")
+      ->type_name("LOG");
+  learn
+      .add_option("--corrections", arguments.corrections,
+                  "the fixes of each CAN log, in the same order")
+      ->type_name("FILE");
+  add_file(learn, "--from", arguments.from, "go on from what was learned before (.zpt)");
+  add_file(learn, "--json", arguments.json,
+           "write the result as JSON ('-': standard output, and text to standard error)");
+  learn.callback([&] {
+    if (arguments.drives.empty() && arguments.can.empty()) {
+      throw CLI::RequiredError("A DRIVE, or --can LOG");
+    }
+    if (!arguments.can.empty()) need("--config", arguments.config);
+    if (arguments.can.size() != arguments.corrections.size()) {
+      throw CLI::ValidationError("--corrections", "give one for each --can");
+    }
+    command = [&arguments] { return zonepack::run_learn(arguments); };
+  });
+  zonepack::add_examples(
+      learn,
+      {"zoned learn monday.zpr tuesday.zpr --map map --out habits.zpt",
+       "zoned learn --config robot.yaml --map map --out habits.zpt \\\n"
+       "  --can monday.log --corrections monday.txt --can tuesday.log --corrections tuesday.txt",
+       "zoned learn wednesday.zpr --from habits.zpt --map map --out habits.zpt --json -"});
+}
+
 }  // namespace
 
 // An exception that comes here is a bug: it stops the process.
@@ -254,6 +293,8 @@ int main(int argc, char** argv) {
   add_listen(app, listen_arguments, command);
   zonepack::CalibrateArguments calibrate_arguments;
   add_calibrate(app, calibrate_arguments, command);
+  zonepack::LearnArguments learn_arguments;
+  add_learn(app, learn_arguments, command);
   zonepack::add_examples(
       app, {"zoned run --config robot.yaml --map map --can socketcan:can0 --check",
             "zoned run --config robot.yaml --map map --can socketcan:can0",

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "runtime/odometry/pose.hpp"
 #include "runtime/pack_format/ids.hpp"
@@ -27,6 +28,10 @@ struct PreloadSettings {
   double hold_s = 0.3;             // an approach not seen for this long is given up
   double most_turn_rad = 1.5;      // an arc is followed this far; then the path goes straight on
   double most_reach_m = 20;        // and no path is followed farther
+  // What Transitions are used for (Cycle), besides this path:
+  std::string transitions;  // file of what was learned; empty: none
+  bool learn = false;       // the run goes on learning
+  double pays = 0.5;        // seconds saved for each second of reading that may be for nothing
 };
 
 // Which zones are being approached: those whose portal the robot's path crosses within the horizon

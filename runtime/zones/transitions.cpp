@@ -88,9 +88,9 @@ Transitions::Transitions(const ZoneGraph& graph) : graph_(graph) {
   contexts_.reserve(most_);
 }
 
-bool Transitions::joined(ZoneId a, ZoneId b) const noexcept {
-  if (a >= graph_.zone_count() || b >= graph_.zone_count()) return false;
-  const auto exits = graph_.exits(a);
+bool joined(const ZoneGraph& graph, ZoneId a, ZoneId b) noexcept {
+  if (a >= graph.zone_count() || b >= graph.zone_count()) return false;
+  const auto exits = graph.exits(a);
   return std::any_of(exits.begin(), exits.end(), [b](const Exit& exit) { return exit.to == b; });
 }
 
@@ -141,12 +141,12 @@ void Transitions::count(Context& context, ZoneId next, std::uint32_t millisecond
 }
 
 bool Transitions::learn(ZoneId before, ZoneId now, ZoneId next, std::int64_t stay_ns) noexcept {
-  if (!joined(now, next)) return false;
+  if (!joined(graph_, now, next)) return false;
   const auto milliseconds = static_cast<std::uint32_t>(
       std::clamp<std::int64_t>(stay_ns / 1'000'000, 0, kMostMilliseconds));
   ++steps_;
   count(open(kNoZone, now), next, milliseconds);
-  if (joined(before, now)) count(open(before, now), next, milliseconds);
+  if (joined(graph_, before, now)) count(open(before, now), next, milliseconds);
   return true;
 }
 
@@ -197,7 +197,7 @@ void Transitions::blend_in(const Context* context, Candidates& all) const noexce
 Successors Transitions::after(ZoneId before, ZoneId now) const noexcept {
   Successors successors;
   if (now >= graph_.zone_count()) return successors;
-  const Context* const order2 = joined(before, now) ? find(before, now) : nullptr;
+  const Context* const order2 = joined(graph_, before, now) ? find(before, now) : nullptr;
   const Context* const order1 = find(kNoZone, now);
   Candidates all;
   // What was counted first, so that it has room whatever the number of portals.
@@ -229,12 +229,12 @@ double Transitions::seconds_in(ZoneId before, ZoneId now) const noexcept {
 bool Transitions::restore(const Context& context) noexcept {
   if (contexts_.size() == most_ || find(context.before, context.now) != nullptr) return false;
   if (context.now >= graph_.zone_count()) return false;
-  if (context.before != kNoZone && !joined(context.before, context.now)) return false;
+  if (context.before != kNoZone && !joined(graph_, context.before, context.now)) return false;
   const std::size_t size = context.size();
   if (size == 0) return false;
   for (std::size_t i = 0; i < size; ++i) {
     const Entry& entry = context.next[i];
-    if (!joined(context.now, entry.zone) || entry.count == 0 || entry.count > kMostCount ||
+    if (!joined(graph_, context.now, entry.zone) || entry.count == 0 || entry.count > kMostCount ||
         entry.milliseconds > kMostMilliseconds)
       return false;
     for (std::size_t k = 0; k < i; ++k) {
@@ -247,10 +247,34 @@ bool Transitions::restore(const Context& context) noexcept {
   return true;
 }
 
-const ZoneSteps::Step* ZoneSteps::enter(const Transitions& transitions, ZoneId zone,
+void Transitions::take_over(const Transitions& other) noexcept {
+  contexts_.clear();
+  steps_ = other.steps_;
+  const auto here = [&](ZoneId zone) {
+    return zone == kNoZone ? kNoZone : graph_.find(other.graph_.name(zone));
+  };
+  for (const Context& theirs : other.contexts_) {
+    Context context;
+    context.before = here(theirs.before);
+    context.now = here(theirs.now);
+    context.seen = theirs.seen;
+    // A zone before that is gone leaves nothing that order 1 does not hold.
+    if (context.before == kNoZone && theirs.before != kNoZone) continue;
+    std::size_t size = 0;
+    for (const Entry& entry : theirs.next) {
+      const ZoneId zone = here(entry.zone);
+      if (!joined(graph_, context.now, zone)) continue;
+      context.next[size] = entry;
+      context.next[size++].zone = zone;
+    }
+    restore(context);
+  }
+}
+
+const ZoneSteps::Step* ZoneSteps::enter(const ZoneGraph& graph, ZoneId zone,
                                         std::int64_t t_ns) noexcept {
   if (zone == now_) return nullptr;
-  const bool step = transitions.joined(now_, zone);
+  const bool step = joined(graph, now_, zone);
   step_ = {before_, now_, zone, t_ns - since_ns_};
   before_ = step ? now_ : kNoZone;
   now_ = zone;

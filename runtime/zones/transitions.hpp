@@ -39,6 +39,9 @@ class Successors {
   std::size_t count_ = 0;
 };
 
+// Whether a portal joins the two zones.
+bool joined(const ZoneGraph& graph, ZoneId a, ZoneId b) noexcept;
+
 // Which zone a robot enters next, as counted on its drives: by the zone that it is in and the one
 // before it (order 2), blended with what is known of the zone that it is in alone (order 1), and
 // that with the geometry of the portals: straight on rather than left or right, and that rather
@@ -93,6 +96,10 @@ class Transitions {
   // Expected seconds between entering `now` from `before` and leaving it.
   double seconds_in(ZoneId before, ZoneId now) const noexcept;
 
+  // Takes over what another map's table holds of zones that have the same name in this map and are
+  // joined likewise; what this one held goes. Looks each zone of a context up by its name.
+  void take_over(const Transitions& other) noexcept;
+
   // Adds a context from a file. False, and nothing is added, when it is there already, does not fit
   // this map or the table, or breaks a rule.
   bool restore(const Context& context) noexcept;
@@ -101,7 +108,6 @@ class Transitions {
   std::span<const Context> contexts() const noexcept { return contexts_; }
   std::uint32_t steps() const noexcept { return steps_; }  // counted so far, modulo 2^32
   void continue_steps(std::uint32_t steps) noexcept { steps_ = steps; }
-  bool joined(ZoneId a, ZoneId b) const noexcept;
   std::size_t capacity() const noexcept { return most_; }
   const ZoneGraph& graph() const noexcept { return graph_; }
 
@@ -130,15 +136,15 @@ class Transitions {
 // Follows a robot from zone to zone: what Transitions learns from.
 class ZoneSteps {
  public:
-  // The robot is in `zone` since t_ns: kNoZone when it is not known where.
-  // Returns whether it was a step from one zone to a neighbour, which is then in the fields.
+  // From `now`, which it had entered from `before` (kNoZone: not known), to its neighbour `next`.
   struct Step {
     ZoneId before = kNoZone, now = kNoZone, next = kNoZone;
     std::int64_t stay_ns = 0;
   };
 
-  // The step that this completes, if it is one; the same zone again is none.
-  const Step* enter(const Transitions& transitions, ZoneId zone, std::int64_t t_ns) noexcept;
+  // The robot is in `zone` since t_ns; kNoZone: it is not known where. Null unless this completes a
+  // step; the same zone again is none.
+  const Step* enter(const ZoneGraph& graph, ZoneId zone, std::int64_t t_ns) noexcept;
 
   ZoneId before() const noexcept { return before_; }
   ZoneId now() const noexcept { return now_; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/zones/zone_graph.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "platform/base/require.hpp"
@@ -48,6 +49,13 @@ ZoneGraph::ZoneGraph(std::vector<GraphZone> zones, std::span<const GraphPortal> 
     exits_[next[portal.zone_b]++] = {portal.zone_a, portal.segment,
                                      direction_into(portal.zone_a, portal.segment)};
   }
+}
+
+ZoneId ZoneGraph::find(std::string_view name) const noexcept {
+  const auto place = std::ranges::lower_bound(
+      zones_, name, {}, [](const GraphZone& zone) { return std::string_view(zone.name); });
+  if (place == zones_.end() || place->name != name) return kNoZone;
+  return static_cast<ZoneId>(place - zones_.begin());
 }
 
 std::span<const Exit> ZoneGraph::exits(ZoneId zone) const noexcept {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
@@ -49,6 +50,9 @@ class ZoneGraph {
   const Polygon& polygon(ZoneId zone) const noexcept { return zones_[zone].polygon; }
 
   bool loadable(ZoneId zone) const noexcept { return zones_[zone].loadable; }
+
+  // The zone of this name; kNoZone: none.
+  ZoneId find(std::string_view name) const noexcept;
 
   // The portals of a zone, in the order in which they were given.
   std::span<const Exit> exits(ZoneId zone) const noexcept;

@@ -242,7 +242,7 @@ Outcome<void> drive(const LoopArguments& arguments, const CameraTraits& camera_i
   input.start = arguments.start;
   input.cycle = cycle_config(settings);
   input.most_frames = settings.cycle.most_frames;
-  input.terms = map_terms(arguments, settings);
+  input.terms = map_terms(arguments, inputs->run);
   input.events_path = arguments.events;
   input.fixes = &loop;
   input.observer = &heading;

@@ -190,23 +190,23 @@ TEST_F(TransitionsTest, ListsAtMostEightSuccessorsTheLikeliestFirst) {
 
 TEST_F(TransitionsTest, FollowsTheRobotFromZoneToZone) {
   ZoneSteps steps;
-  EXPECT_EQ(steps.enter(table, kA, 1 * kSecond_ns), nullptr);
-  EXPECT_EQ(steps.enter(table, kA, 2 * kSecond_ns), nullptr);
-  const ZoneSteps::Step* step = steps.enter(table, kH, 4 * kSecond_ns);
+  EXPECT_EQ(steps.enter(graph, kA, 1 * kSecond_ns), nullptr);
+  EXPECT_EQ(steps.enter(graph, kA, 2 * kSecond_ns), nullptr);
+  const ZoneSteps::Step* step = steps.enter(graph, kH, 4 * kSecond_ns);
   ASSERT_NE(step, nullptr);
   EXPECT_EQ(step->before, kNoZone);
   EXPECT_EQ(step->now, kA);
   EXPECT_EQ(step->next, kH);
   EXPECT_EQ(step->stay_ns, 3 * kSecond_ns);
-  step = steps.enter(table, kC, 5 * kSecond_ns);
+  step = steps.enter(graph, kC, 5 * kSecond_ns);
   ASSERT_NE(step, nullptr);
   EXPECT_EQ(step->before, kA);
   // Carried through a wall: no step, and what came before is forgotten.
-  EXPECT_EQ(steps.enter(table, kA, 6 * kSecond_ns), nullptr);
+  EXPECT_EQ(steps.enter(graph, kA, 6 * kSecond_ns), nullptr);
   EXPECT_EQ(steps.before(), kNoZone);
   EXPECT_EQ(steps.now(), kA);
-  EXPECT_EQ(steps.enter(table, kNoZone, 7 * kSecond_ns), nullptr);
-  EXPECT_EQ(steps.enter(table, kH, 8 * kSecond_ns), nullptr);
+  EXPECT_EQ(steps.enter(graph, kNoZone, 7 * kSecond_ns), nullptr);
+  EXPECT_EQ(steps.enter(graph, kH, 8 * kSecond_ns), nullptr);
 }
 
 }  // namespace
