@@ -42,6 +42,7 @@ Cycle::Cycle(const CycleConfig& settings, const CycleParts& parts)
       dock_(settings.dock),
       tracker_settings_(settings.tracker),
       transitions_(parts.transitions),
+      preloads_(settings.preload.learn || !settings.preload.transitions.empty()),
       learns_(settings.preload.learn && parts.transitions != nullptr),
       pays_(settings.preload.pays),
       load_s_(parts.load_s) {
@@ -310,7 +311,7 @@ void Cycle::foresee() noexcept {
   const std::span<const ZoneId> ahead = route_ahead();
   if (!ahead.empty()) {
     foresight_.follow(ahead, steps_.before(), own, transitions_);
-  } else if (transitions_ != nullptr && own != kNoZone) {
+  } else if (preloads_ && transitions_ != nullptr && own != kNoZone) {
     foresight_.look(*transitions_, steps_.before(), own);
   }
   for (const Coming& coming : foresight_.coming()) {

@@ -190,6 +190,7 @@ class Cycle {
   std::size_t route_length_ = 0;
   std::size_t route_place_ = 0;  // of the robot's zone on the route; route_length_: not on it
   Transitions* transitions_;
+  bool preloads_ = false;  // what is likely to come
   bool learns_;
   double pays_;
   std::span<const float> load_s_;

@@ -13,11 +13,12 @@ ExpectedUse::ExpectedUse(const EvictionPlace& place, const Transitions& transiti
 
 void ExpectedUse::begin_cycle(const EvictionMoment& moment) noexcept {
   const bool elsewhere = moment.zone != zone_ || moment.zone_before != zone_before_;
-  if (elsewhere || !std::ranges::equal(moment.route, ahead_)) {
+  if (elsewhere || !std::ranges::equal(moment.ahead, ahead())) {
     zone_ = moment.zone;
     zone_before_ = moment.zone_before;
-    ahead_ = moment.route;
-    forecast_.begin(zone_before_, zone_, ahead_);
+    ahead_count_ = std::min(moment.ahead.size(), ahead_.size());
+    std::copy_n(moment.ahead.begin(), ahead_count_, ahead_.begin());
+    forecast_.begin(zone_before_, zone_, ahead());
   } else {
     forecast_.advance();
   }

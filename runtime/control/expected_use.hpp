@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
+#include "runtime/control/command.hpp"
 #include "runtime/memory/eviction_order.hpp"
 #include "runtime/memory/lru_shadow.hpp"
 #include "runtime/zones/transitions.hpp"
@@ -49,6 +52,7 @@ class ExpectedUse final : public EvictionOrder {
   }
 
  private:
+  std::span<const ZoneId> ahead() const noexcept { return {ahead_.data(), ahead_count_}; }
   ZoneId least_expected(const EvictionCandidates& candidates) noexcept;
   ZoneId first_outside_shadow(const EvictionCandidates& candidates) const noexcept;
 
@@ -56,7 +60,8 @@ class ExpectedUse final : public EvictionOrder {
   LruShadow shadow_;
   ZoneId zone_ = kNoZone;
   ZoneId zone_before_ = kNoZone;
-  std::span<const ZoneId> ahead_;
+  std::array<ZoneId, Command::kMostRoute> ahead_{};  // a copy: a new hint overwrites the old one
+  std::size_t ahead_count_ = 0;
   std::int64_t most_loss_;    // slots
   std::int64_t most_credit_;  // slots
   std::int64_t loss_ = 0;     // slots loaded, less those that the shadow loaded

@@ -17,7 +17,7 @@ struct EvictionMoment {
   std::int64_t now_ns = 0;
   ZoneId zone = kNoZone;            // the robot's own
   ZoneId zone_before = kNoZone;     // the one that it came from
-  std::span<const ZoneId> route{};  // hinted, whole; empty: none. Valid during the cycle.
+  std::span<const ZoneId> ahead{};  // zones of the route after `zone`; empty: none or off it
 };
 
 // When a zone was held and used; times as EvictionMoment's.

@@ -191,6 +191,8 @@ class Residency {
                                     ByteCount slot_bytes) noexcept;
   // What the tables of this class take from the budget.
   static ByteCount table_bytes(std::size_t zones) noexcept;
+  // And what they take more with an order.
+  static ByteCount order_bytes(std::size_t zones) noexcept { return zones * sizeof(ZoneTimes); }
 
  private:
   enum class List : std::uint8_t { kNone, kEvictable, kLeased };

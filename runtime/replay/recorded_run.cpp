@@ -36,6 +36,7 @@ Outcome<Catalog> catalog_of(const RecordingReader& recording, const Settings& se
 MapTerms recorded_terms(const RecordingReader& recording, const Settings& settings) {
   MapTerms terms = recording.preface().terms;
   terms.habits = has_habits(settings);
+  terms.eviction = settings.memory.eviction;
   return terms;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "runtime/control/expected_use.hpp"
 #include "runtime/run/map_demand.hpp"
 
 namespace zonepack {
@@ -110,7 +111,13 @@ ByteCount MapModel::room_for_next() const noexcept {
 }
 
 ByteCount extra_fixed_bytes(const Catalog& catalog, const MapTerms& terms) noexcept {
-  return terms.habits ? Transitions::table_bytes(catalog.zones.size(), catalog.portals.size()) : 0;
+  const std::size_t zones = catalog.zones.size();
+  ByteCount bytes = 0;
+  if (terms.habits) bytes += Transitions::table_bytes(zones, catalog.portals.size());
+  if (terms.eviction == EvictionRule::kExpected) {
+    bytes += ExpectedUse::table_bytes(zones) + Residency::order_bytes(zones);
+  }
+  return bytes;
 }
 
 MapTerms MapModel::terms_of_next(const MapTerms& terms) const {

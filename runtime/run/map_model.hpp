@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "platform/base/failure.hpp"
+#include "runtime/control/eviction_rule.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/memory/residency.hpp"
 #include "runtime/run/modelled_loader.hpp"
@@ -28,6 +29,7 @@ struct MapTerms {
   std::optional<std::uint32_t> slots{};  // that there are; nothing: as many as are of use
   bool habits = false;  // a table of Transitions is held, with what was learned, unless null
   std::shared_ptr<const LearnedTransitions> learned{};
+  EvictionRule eviction = EvictionRule::kLru;
 };
 
 // What holding a map on these terms takes besides what the catalog charges.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/run/map_version.hpp"
 
+#include "runtime/control/expected_use.hpp"
+
 namespace zonepack {
 
 Outcome<std::shared_ptr<MapVersion>> MapVersion::make(std::uint32_t number, Catalog catalog,
@@ -10,6 +12,7 @@ Outcome<std::shared_ptr<MapVersion>> MapVersion::make(std::uint32_t number, Cata
   auto model = MapModel::make(map->catalog_, terms);
   if (!model) return model.error();
   map->model_ = std::move(*model);
+  map->eviction_rule_ = terms.eviction;
   if (terms.habits) {
     map->transitions_.emplace(map->model_->graph);
     if (terms.learned) restore(*terms.learned, *map->transitions_);
@@ -20,10 +23,13 @@ Outcome<std::shared_ptr<MapVersion>> MapVersion::make(std::uint32_t number, Cata
 Outcome<void> MapVersion::prepare(const CycleConfig& config, ZoneLoader& loader, EventSink& events,
                                   ZoneDirectory* directory, const EvictionOrderMaker& eviction) {
   const MapModel& map = *model_;
+  const ResidencyLimits& limits = map.limits;
+  const EvictionPlace place{
+      map.needs, Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes)};
   if (eviction) {
-    const ResidencyLimits& limits = map.limits;
-    eviction_ = eviction(
-        {map.needs, Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes)});
+    eviction_ = eviction(place);
+  } else if (eviction_rule_ == EvictionRule::kExpected) {
+    eviction_ = std::make_unique<ExpectedUse>(place, *transitions_);
   }
   memory_.emplace(map.needs.size(), map.limits, eviction_.get());
   if (auto pinned = map.pin(*memory_); !pinned) return pinned;

@@ -21,7 +21,8 @@ class MapVersion {
   static Outcome<std::shared_ptr<MapVersion>> make(std::uint32_t number, Catalog catalog,
                                                    const MapTerms& terms);
 
-  // Makes memory and cycle; all that is referred to outlives this object. eviction: null for LRU.
+  // Makes memory and cycle; all that is referred to outlives this object. eviction: in place of the
+  // terms' rule.
   Outcome<void> prepare(const CycleConfig& config, ZoneLoader& loader, EventSink& events,
                         ZoneDirectory* directory, const EvictionOrderMaker& eviction = nullptr);
 
@@ -47,6 +48,7 @@ class MapVersion {
   Catalog catalog_;
   std::unique_ptr<MapModel> model_;
   std::optional<Transitions> transitions_;
+  EvictionRule eviction_rule_ = EvictionRule::kLru;
   std::unique_ptr<EvictionOrder> eviction_;
   std::optional<Residency> memory_;
   std::optional<Cycle> cycle_;

@@ -119,7 +119,8 @@ CycleConfig cycle_config(const Settings& settings) {
 }
 
 bool has_habits(const Settings& settings) {
-  return settings.preload.learn || !settings.preload.transitions.empty();
+  return settings.preload.learn || !settings.preload.transitions.empty() ||
+         settings.memory.eviction == EvictionRule::kExpected;
 }
 
 Outcome<LearnedTransitions> load_transitions(const std::string& path) {
@@ -151,6 +152,7 @@ MapTerms map_terms(const RunChoices& choices, const RunInputs& inputs) {
   terms.period_ns = static_cast<std::int64_t>(1e9 / settings.cycle.period_hz + 0.5);
   terms.habits = has_habits(settings);
   terms.learned = inputs.learned;
+  terms.eviction = settings.memory.eviction;
   return terms;
 }
 

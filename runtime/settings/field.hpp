@@ -24,7 +24,7 @@ struct Field {
                    std::optional<ByteCount> Section::*, PayloadChoice Section::*,
                    OdometryModel Section::*, WheelUnit Section::*, AngleUnit Section::*,
                    ByteOrder Section::*, SignalType Section::*, ReadMode Section::*,
-                   GpioBias Section::*, SafeLevel Section::*>;
+                   GpioBias Section::*, SafeLevel Section::*, EvictionRule Section::*>;
   const char* key;
   Member member;
   double least;
@@ -67,6 +67,11 @@ struct EnumWords<SignalType> {
 template <>
 struct EnumWords<ReadMode> {  // kCached is for tools
   static constexpr const char* kWords[] = {"direct", "mapped", "buffered"};
+};
+
+template <>
+struct EnumWords<EvictionRule> {
+  static constexpr const char* kWords[] = {"lru", "expected"};
 };
 
 template <>

@@ -10,6 +10,7 @@
 #include "platform/base/byte_count.hpp"
 #include "platform/base/failure.hpp"
 #include "platform/storage.hpp"
+#include "runtime/control/eviction_rule.hpp"
 #include "runtime/odometry/can_signals.hpp"
 #include "runtime/odometry/pose_filter.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
@@ -35,6 +36,7 @@ struct MemorySettings {
   std::optional<ByteCount> budget;   // nothing: see limits_for()
   std::uint64_t max_signatures = 0;  // 0: no such limit
   PayloadChoice payload;
+  EvictionRule eviction = EvictionRule::kLru;
   std::vector<std::string> pinned;  // names of zones that are never evicted
   std::vector<std::string> layers;  // of which zones are loaded; empty: all
 };

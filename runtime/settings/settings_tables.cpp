@@ -20,6 +20,9 @@ const Fields<MemorySettings>& memory_fields() {
        "most signatures in memory at once; 0: no limit; --max-signatures"},
       {"payload", &S::payload, 0, 0, "",
        "what is loaded of every signature besides its core (pose and links)"},
+      {"eviction", &S::eviction, 0, 0, "",
+       "which zone makes room: lru, the least recently used; expected, the one expected to be used "
+       "last, by the route and by preload.transitions and preload.learn"},
       {"pinned", &S::pinned, 0, 0, "", "names of zones that are never unloaded"},
       {"layers", &S::layers, 0, 0, "",
        "names of layers (zonepack build --layer): zones of others are never loaded; []: all"},

@@ -267,6 +267,10 @@ Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const c
                                  SafeLevel& value) {
   return parse_word(node, value);
 }
+Outcome<void> YamlSection::parse(const YAML::Node& node, double, double, const char*,
+                                 EvictionRule& value) {
+  return parse_word(node, value);
+}
 
 std::string number_text(double value) {
   const double size = std::abs(value);

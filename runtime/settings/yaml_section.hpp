@@ -107,6 +107,7 @@ class YamlSection {
   static Outcome<void> parse(const YAML::Node&, double, double, const char*, ReadMode&);
   static Outcome<void> parse(const YAML::Node&, double, double, const char*, GpioBias&);
   static Outcome<void> parse(const YAML::Node&, double, double, const char*, SafeLevel&);
+  static Outcome<void> parse(const YAML::Node&, double, double, const char*, EvictionRule&);
 
   std::string path_;
   FaultList& faults_;
