@@ -32,7 +32,7 @@ wait $zoned || fail "$(cat "$work/out.txt")"
 
 # Operations whose whole cost, with all they call, is told apart.
 operations='WheelOdometry::take PoseFilter::predict PoseFilter::correct PoseFilter::estimate PoseFilter::drift_until
-  MapKeeper::collect MapKeeper::pin MapKeeper::keep ZoneTracker::update Preload::update Residency::lease'
+  ZoneKeeper::collect ZoneKeeper::pin ZoneKeeper::keep ZoneTracker::update Preload::update Residency::lease'
 
 # A line a cycle: instructions, then calls and instructions of every operation.
 count() {  # OUT INPUTS
@@ -87,7 +87,7 @@ paste -d' ' "$work/inputs" <(head -n "$cycles" "$work/first") | awk -v names="$o
     n = split(names, name)
     allowed["WheelOdometry::take"] = allowed["PoseFilter::predict"] = 64  # cycle.most_frames
     allowed["PoseFilter::correct"] = 16                                   # ControlLoop::kMostCorrections
-    allowed["MapKeeper::pin"] = allowed["Residency::lease"] = 16          # Cycle::kMostCommands
+    allowed["ZoneKeeper::pin"] = allowed["Residency::lease"] = 16          # Cycle::kMostCommands
   }
   {
     total = $7
@@ -99,7 +99,7 @@ paste -d' ' "$work/inputs" <(head -n "$cycles" "$work/first") | awk -v names="$o
       if (calls > most_calls[i]) most_calls[i] = calls
       if (calls > 0 && cost / calls > worst_call[i]) worst_call[i] = cost / calls
       if (cost > worst_in_cycle[i]) worst_in_cycle[i] = cost
-      if (name[i] != "Residency::lease" && name[i] != "MapKeeper::pin") rest -= cost
+      if (name[i] != "Residency::lease" && name[i] != "ZoneKeeper::pin") rest -= cost
     }
     if (rest > worst_rest) worst_rest = rest
     if (total > worst) { worst = total; line = $0; at = $1 }
@@ -114,6 +114,7 @@ paste -d' ' "$work/inputs" <(head -n "$cycles" "$work/first") | awk -v names="$o
       part = times * worst_call[i]
       bound += part
       if (w[7 + 2 * i] > sets_cost) { sets_cost = w[7 + 2 * i]; sets = name[i] }
+      if (!all_calls[i]) { print "instructions: nothing is called " name[i] " any more, or the drive never does it"; lost = 1 }
       printf "%-28s %9d %11.0f %11.0f %9d %11.0f %11d\n", name[i], all_calls[i],
              all_calls[i] ? all_cost[i] / all_calls[i] : 0, worst_call[i], times, part, w[7 + 2 * i]
     }
@@ -122,6 +123,6 @@ paste -d' ' "$work/inputs" <(head -n "$cycles" "$work/first") | awk -v names="$o
     printf "worst cycle %d: %d instructions; given %d frames, %d corrections, %d loads, %d commands; %d events; most of it: %s, %d\n",
            at, worst, w[2], w[3], w[4], w[5], w[6], sets, sets_cost
     printf "bound with all that a cycle may be given: %.0f instructions, of %d\n", bound, most
-    exit !(worst <= bound && bound <= most)
+    exit lost || !(worst <= bound && bound <= most)
   }' || fail "a cycle is over its bound, or the bound over $kMost instructions"
 echo "the same in both runs, cycle by cycle"
