@@ -6,8 +6,8 @@
 namespace zonepack {
 namespace {
 
-constexpr int kStatesAtOnce = 8;
-constexpr int kStepsAtOnce = 4;
+constexpr int kStatesAtOnce = 4;
+constexpr int kStepsAtOnce = 2;
 
 }  // namespace
 

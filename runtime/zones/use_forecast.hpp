@@ -41,7 +41,7 @@ class UseForecast {
   // the zones `ahead` in their order (none: not known). The zones ahead must outlive the forecast.
   void begin(ZoneId before, ZoneId now, std::span<const ZoneId> ahead) noexcept;
 
-  // Does a small part of the work that is left: 8 states, or 4 steps.
+  // Does a small part of the work that is left: 4 states, or 2 steps.
   void advance() noexcept;
   bool finished() const noexcept { return next_state_ == states_ && step_ == kSteps; }
 

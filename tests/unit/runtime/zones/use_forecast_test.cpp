@@ -82,8 +82,8 @@ TEST_F(UseForecastTest, ValuesDoNotDependOnHowTheWorkIsSpread) {
   int parts = 0;
   for (; !spread.finished(); ++parts) spread.advance();
   for (const ZoneId zone : {kA, kB, kC}) EXPECT_EQ(spread.value(zone), forecast.value(zone));
-  // 5 states (a from nowhere; b from a; a, c from b; b from c) in one part, 60 steps by four.
-  EXPECT_EQ(parts, 1 + 60 / 4);
+  // 5 states (a from nowhere; b from a; a, c from b; b from c) by four, 60 steps by two.
+  EXPECT_EQ(parts, 2 + 60 / 2);
 }
 
 TEST(UseForecast, OfALargeMapOnlyWhatIsNearIsForecast) {
@@ -98,7 +98,7 @@ TEST(UseForecast, OfALargeMapOnlyWhatIsNearIsForecast) {
   int parts = 0;
   forecast.begin(kNoZone, 500, {});
   for (; !forecast.finished(); ++parts) forecast.advance();
-  EXPECT_LE(parts, 128 / 8 + 60 / 4);
+  EXPECT_LE(parts, 128 / 4 + 60 / 2);
 }
 
 }  // namespace
