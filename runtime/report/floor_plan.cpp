@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -198,6 +199,31 @@ void draw_routes(Svg& svg, const FloorPlan& plan, const PlanView& view) {
   svg.rect({end.x - 4, end.y - 4}, 8, 8, {.fill = kInk, .stroke = kWhite, .hint = "end"});
 }
 
+// Of many, one for each few pixels: a drawing's size has a bound, whatever the map's.
+void draw_signatures(Svg& svg, const FloorPlan& plan, const PlanView& view) {
+  constexpr std::size_t kMany = 5000;
+  constexpr double kCell_px = 3;
+  const double radius = plan.signatures.size() > 400 ? 1.2 : 1.9;
+  std::set<std::pair<long, long>> taken;
+  for (const Point2& p : plan.signatures) {
+    const Px at = view(p);
+    if (plan.signatures.size() > kMany &&
+        !taken.emplace(std::lround(at.x / kCell_px), std::lround(at.y / kCell_px)).second) {
+      continue;
+    }
+    svg.circle(at, radius, {.fill = kInk, .opacity = 0.5});
+  }
+}
+
+void draw_portals(Svg& svg, const FloorPlan& plan, const PlanView& view) {
+  constexpr std::size_t kMany = 5000;
+  for (const Segment2& portal : plan.portals) {
+    const Px p = view(portal.p), q = view(portal.q);
+    if (plan.portals.size() > kMany && distance_px(p, q) < 1) continue;
+    svg.line(p, q, {.stroke = kDoor, .stroke_width = 3.5});
+  }
+}
+
 // What labels should not hide: routes and dots, thinned to a few pixels, and the portals.
 std::vector<Px> points_to_keep(const FloorPlan& plan, const PlanView& view) {
   std::vector<Px> points;
@@ -302,13 +328,8 @@ Svg draw_floor_plan(const FloorPlan& plan) {
                   {.stroke = kZoneLine, .stroke_width = 1.25, .hint = zone.hint});
     }
   }
-  const double radius = plan.signatures.size() > 400 ? 1.2 : 1.9;
-  for (const Point2& p : plan.signatures) {
-    svg.circle(view(p), radius, {.fill = kInk, .opacity = 0.5});
-  }
-  for (const Segment2& portal : plan.portals) {
-    svg.line(view(portal.p), view(portal.q), {.stroke = kDoor, .stroke_width = 3.5});
-  }
+  draw_signatures(svg, plan, view);
+  draw_portals(svg, plan, view);
   draw_routes(svg, plan, view);
   svg.close();
   draw_labels(svg, plan, view);

@@ -112,6 +112,16 @@ TEST(FloorPlan, ShowsZonesPortalsSignaturesAndRoutes) {
   EXPECT_EQ(count_of(text, "<title>start</title>"), 1u);
 }
 
+// 20,000 signatures along 16 m, which are at most 1200 px: at most one for each 3 px.
+TEST(FloorPlan, OfManySignaturesDrawsOneForEachFewPixels) {
+  FloorPlan plan = two_rooms();
+  plan.signatures.clear();
+  for (int i = 0; i < 20'000; ++i) plan.signatures.push_back({16.0 * i / 20'000, 4});
+  const auto drawn = count_of(draw_floor_plan(plan).file_text(), "opacity=\"0.5\"");
+  EXPECT_LE(drawn, 401u);
+  EXPECT_GE(drawn, 100u);
+}
+
 TEST(FloorPlan, ColoursTheRouteByZoneWithoutAGap) {
   const std::string text = draw_floor_plan(two_rooms()).inline_text();
   const auto stretch = [&](Color color) {
