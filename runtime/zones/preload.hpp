@@ -27,6 +27,7 @@ struct PreloadSettings {
   double hold_s = 0.3;             // an approach not seen for this long is given up
   double most_turn_rad = 1.5;      // an arc is followed this far; then the path goes straight on
   double most_reach_m = 20;        // and no path is followed farther
+  bool off = false;                // nothing is approached: for comparison (zoned evaluate)
 };
 
 // Which zones are being approached: those whose portal the robot's path crosses within the horizon
