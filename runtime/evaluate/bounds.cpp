@@ -83,40 +83,69 @@ class FarthestRun {
   LoadTotals totals_;
 };
 
-// The bound by one limit: `size_of` a zone, `room` for all.
-template <typename SizeOf, typename CostOf>
-std::uint64_t least_cost(const RequestSteps& requests, const BoundPlace& place, std::uint64_t room,
-                         SizeOf&& size_of, CostOf&& cost_of) {
-  std::vector<std::uint64_t> free;
-  for (const std::vector<ZoneId>& step : requests.steps) {
-    std::uint64_t needed = 0;
-    for (const ZoneId zone : step) needed += size_of(place.zones[zone]);
-    ZP_REQUIRE(needed <= room);
-    free.push_back(room - needed);
-  }
-  std::uint64_t all = 0;
-  std::vector<Interval> gaps;
-  const auto uses = uses_of(requests, place.zones.size());
-  for (std::size_t zone = 0; zone < uses.size(); ++zone) {
-    const ZoneWeight& weight = place.zones[zone];
-    all += uses[zone].size() * cost_of(weight);
-    for (std::size_t i = 1; i < uses[zone].size(); ++i) {
-      gaps.push_back({uses[zone][i - 1] + 1, uses[zone][i] - 1, size_of(weight), cost_of(weight)});
+// A stretch between two steps that need a zone, and what the steps inside leave free.
+class Gaps {
+ public:
+  Gaps(const RequestSteps& requests, const BoundPlace& place) : place_(place) {
+    for (const std::vector<ZoneId>& step : requests.steps) {
+      NeedSum needed;
+      for (const ZoneId zone : step) needed.add(place.zones[zone].need);
+      ZP_REQUIRE(fits(needed, {}, place));
+      needed_.push_back(needed);
+    }
+    const auto uses = uses_of(requests, place.zones.size());
+    for (ZoneId zone = 0; zone < uses.size(); ++zone) {
+      for (std::size_t i = 0; i < uses[zone].size(); ++i) {
+        uses_.push_back(zone);
+        if (i > 0) add(zone, uses[zone][i - 1] + 1, uses[zone][i] - 1);
+      }
     }
   }
-  return all - most_gain(free, gaps);
-}
+
+  // The bound that one limit gives: `room` for all, of which a need takes size_of(need).
+  template <typename SizeOf, typename CostOf>
+  std::uint64_t least_cost(std::uint64_t room, SizeOf&& size_of, CostOf&& cost_of) const {
+    std::vector<std::uint64_t> free;
+    for (const NeedSum& needed : needed_) free.push_back(room - size_of(needed));
+    std::uint64_t all = 0;
+    for (const ZoneId zone : uses_) all += cost_of(place_.zones[zone]);
+    std::vector<Interval> intervals;
+    for (const Gap& gap : gaps_) {
+      const ZoneWeight& zone = place_.zones[gap.zone];
+      intervals.push_back({gap.first, gap.last, size_of(zone.need), cost_of(zone)});
+    }
+    return all - most_gain(free, intervals);
+  }
+
+ private:
+  struct Gap {
+    ZoneId zone;
+    std::size_t first, last;  // steps inside; none: last < first
+  };
+
+  // Unless the zone does not fit next to what some step inside needs.
+  void add(ZoneId zone, std::size_t first, std::size_t last) {
+    for (std::size_t step = first; step <= last && step < needed_.size(); ++step) {
+      if (!fits(needed_[step], place_.zones[zone].need, place_)) return;
+    }
+    gaps_.push_back({zone, first, last});
+  }
+
+  const BoundPlace& place_;
+  std::vector<NeedSum> needed_;  // by step
+  std::vector<ZoneId> uses_;     // a zone for each step that needs it
+  std::vector<Gap> gaps_;        // that could be kept
+};
 
 template <typename CostOf>
-std::uint64_t least_cost(const RequestSteps& requests, const BoundPlace& place, CostOf&& cost_of) {
-  const std::uint64_t by_slots = least_cost(
-      requests, place, place.slots, [](const ZoneWeight& zone) { return zone.need.slots; },
-      cost_of);
+std::uint64_t least_cost(const Gaps& gaps, const BoundPlace& place, CostOf&& cost_of) {
+  const std::uint64_t by_slots = gaps.least_cost(
+      place.slots, [](const auto& need) { return std::uint64_t{need.slots}; }, cost_of);
   if (place.signatures == 0) return by_slots;
   return std::max(by_slots,
-                  least_cost(
-                      requests, place, place.signatures,
-                      [](const ZoneWeight& zone) { return zone.need.signatures; }, cost_of));
+                  gaps.least_cost(
+                      place.signatures,
+                      [](const auto& need) { return std::uint64_t{need.signatures}; }, cost_of));
 }
 
 }  // namespace
@@ -126,10 +155,12 @@ LoadTotals evict_farthest(const RequestSteps& requests, const BoundPlace& place)
 }
 
 LoadTotals least_loads(const RequestSteps& requests, const BoundPlace& place) {
-  return {least_cost(requests, place, [](const ZoneWeight&) { return std::uint64_t{1}; }),
-          least_cost(requests, place,
+  const Gaps gaps(requests, place);
+  return {least_cost(gaps, place, [](const ZoneWeight&) { return std::uint64_t{1}; }),
+          least_cost(gaps, place,
                      [](const ZoneWeight& zone) { return std::uint64_t{zone.need.signatures}; }),
-          least_cost(requests, place, [](const ZoneWeight& zone) { return zone.stored_bytes; })};
+          least_cost(gaps, place,
+                     [](const ZoneWeight& zone) { return std::uint64_t{zone.stored_bytes}; })};
 }
 
 }  // namespace zonepack
