@@ -50,10 +50,11 @@ LoadTotals evict_farthest(const RequestSteps& requests, const BoundPlace& place)
 // in memory for all of that gap, or is loaded again: each need costs a load unless the gap before
 // it is kept, and a first need always costs one. So loads = needs - gaps kept, weighted by what a
 // load of the zone costs. A kept gap takes the zone's room at each step inside it, next to the
-// zones that the step itself needs. So the gaps kept by any rule are a set of intervals that fits
-// into what each step leaves free, and the cost is at least that of all needs less the most that
-// such a set can gain; most_gain() is no less than this. With a limit of signatures as well, each
-// of the two limits alone gives a bound, and the larger one holds.
+// zones that the step itself needs; a zone that does not fit next to these at one of the steps
+// cannot be kept. So the gaps kept by any rule are a set of intervals that fits into what each step
+// leaves free, and the cost is at least that of all needs less the most that such a set can gain;
+// most_gain() is no less than this. With a limit of signatures as well, each of the two limits
+// alone gives a bound, and the larger one holds.
 LoadTotals least_loads(const RequestSteps& requests, const BoundPlace& place);
 
 }  // namespace zonepack

@@ -24,16 +24,16 @@ std::vector<Totals> totals_of(const std::vector<Choice>& choices,
                               const std::vector<Evaluated>& results) {
   std::vector<Totals> all;
   for (std::size_t i = 0; i < choices.size(); ++i) {
-    const auto known = std::ranges::find_if(
+    auto known = std::ranges::find_if(
         all, [&](const Totals& totals) { return same_terms(totals.choice, choices[i]); });
     const Evaluated& result = results[i];
     const RunSummary& summary = result.summary;
     if (known == all.end()) {
-      all.emplace_back();
-      all.back().choice = choices[i];
-      all.back().budget_bytes = summary.budget_bytes;
+      known = all.emplace(known);
+      known->choice = choices[i];
+      known->budget_bytes = summary.budget_bytes;
     }
-    Totals& totals = known == all.end() ? all.back() : *known;
+    Totals& totals = *known;
     ++totals.runs;
     totals.loads += summary.zones_loaded;
     totals.signatures += summary.signatures_loaded;
