@@ -206,6 +206,24 @@ std::string percent(double part, double whole) {
   return whole > 0 ? format_fixed(100 * part / whole, 1) + " %" : "-";
 }
 
+// Of the first columns, which name the choice, those with one value only become words.
+void move_constants_to_caption(report::Table& table, std::size_t columns) {
+  std::string everywhere;
+  for (std::size_t c = columns; c-- > 1;) {
+    const auto cell = static_cast<std::ptrdiff_t>(c);
+    const std::string value = table.rows.front()[c];
+    if (std::ranges::any_of(table.rows, [&](const auto& row) { return row[c] != value; })) continue;
+    if (value != "-") {
+      std::string name = table.columns[c].name;
+      name[0] = static_cast<char>(name[0] - 'A' + 'a');
+      everywhere = name + " " + value + (everywhere.empty() ? "" : ", ") + everywhere;
+    }
+    table.columns.erase(table.columns.begin() + cell);
+    for (auto& row : table.rows) row.erase(row.begin() + cell);
+  }
+  if (!everywhere.empty()) table.caption += " Everywhere: " + everywhere + ".";
+}
+
 void add_totals_table(const Evaluation& evaluation, const std::vector<Totals>& totals,
                       Report& page) {
   report::Table table{
@@ -246,6 +264,7 @@ void add_totals_table(const Evaluation& evaluation, const std::vector<Totals>& t
                                             static_cast<double>(t.foreseen.changes))
                                   : "-"});
   }
+  move_constants_to_caption(table, 6);
   if (totals.size() > kMostRows) {
     table.caption += " The first " + format_count(kMostRows) + " of " +
                      format_count(totals.size()) + " rows; --json has all.";
