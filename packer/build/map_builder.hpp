@@ -10,7 +10,7 @@
 
 #include "packer/build/damages.hpp"
 #include "packer/build/placing.hpp"
-#include "packer/build/progress.hpp"
+#include "platform/progress.hpp"
 #include "packer/build/sessions.hpp"
 #include "packer/encode/pack_writer.hpp"
 #include "packer/record/source_kind.hpp"

@@ -42,7 +42,7 @@ Cycle::Cycle(const CycleConfig& settings, const CycleParts& parts)
       dock_(settings.dock),
       tracker_settings_(settings.tracker),
       transitions_(parts.transitions),
-      preloads_(settings.preload.learn || !settings.preload.transitions.empty()),
+      preloads_(uses_habits(settings.preload)),
       learns_(settings.preload.learn && parts.transitions != nullptr),
       pays_(settings.preload.pays),
       load_s_(parts.load_s) {

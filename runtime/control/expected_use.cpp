@@ -5,8 +5,12 @@
 
 namespace zonepack {
 
-ExpectedUse::ExpectedUse(const EvictionPlace& place, const Transitions& transitions)
-    : forecast_(transitions),
+std::unique_ptr<EvictionOrder> make_expected_use(const EvictionPlace& place) {
+  return std::make_unique<ExpectedUse>(place);
+}
+
+ExpectedUse::ExpectedUse(const EvictionPlace& place)
+    : forecast_(*place.transitions),
       shadow_(place.needs, place.slots),
       most_loss_(static_cast<std::int64_t>(kMostLoss * static_cast<double>(place.slots))),
       most_credit_(static_cast<std::int64_t>(kMostCredit * static_cast<double>(place.slots))) {}

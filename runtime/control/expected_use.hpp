@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "runtime/control/command.hpp"
@@ -35,8 +36,8 @@ class ExpectedUse final : public EvictionOrder {
   static constexpr double kMostLoss = 0.2;    // of the memory
   static constexpr double kMostCredit = 0.5;  // likewise
 
-  // place.needs and the transitions outlive this object.
-  ExpectedUse(const EvictionPlace& place, const Transitions& transitions);
+  // A place with transitions.
+  explicit ExpectedUse(const EvictionPlace& place);
 
   void begin_cycle(const EvictionMoment& moment) noexcept override;
   void requested(ZoneId zone, bool resident) noexcept override;
@@ -67,5 +68,7 @@ class ExpectedUse final : public EvictionOrder {
   std::int64_t loss_ = 0;     // slots loaded, less those that the shadow loaded
   bool follows_shadow_ = false;
 };
+
+std::unique_ptr<EvictionOrder> make_expected_use(const EvictionPlace& place);
 
 }  // namespace zonepack

@@ -83,7 +83,7 @@ class Check {
   bool budget() {
     const MapTerms terms = map_terms(arguments_, inputs_);
     const ByteCount habits = extra_fixed_bytes(inputs_.catalog, terms);
-    inputs_.catalog.fixed_bytes += habits;
+    inputs_.catalog = charged_on(std::move(inputs_.catalog), terms);
     auto model = MapModel::make(inputs_.catalog, terms);
     if (!model) {
       refuse("budget", model.error().message);

@@ -12,6 +12,8 @@
 
 namespace zonepack {
 
+class Transitions;
+
 // Where the robot is when a zone may have to go: the same for all decisions of a cycle.
 struct EvictionMoment {
   std::int64_t now_ns = 0;
@@ -83,6 +85,8 @@ class EvictionOrder {
 struct EvictionPlace {
   std::span<const ZoneNeed> needs;  // by ZoneId; outlives the order
   std::uint64_t slots = 0;          // within the budget
+  // What is known of the robot's habits, if it is held; outlives the order.
+  const Transitions* transitions = nullptr;
 };
 // Null: least recently used, without the cost of an order.
 using EvictionOrderMaker = std::function<std::unique_ptr<EvictionOrder>(const EvictionPlace&)>;

@@ -28,7 +28,8 @@ class LogDrive {
               .terms = input.terms,
               .truth = input.truth,
               .events = input.events_path,
-              .keep_trace = true},
+              .keep_trace = input.keep_trace,
+              .eviction = input.eviction},
              std::move(map)) {
     if (input_.observer != nullptr) run_.add_observer(*input_.observer);
   }
@@ -71,7 +72,7 @@ Outcome<ReplayResult> LogDrive::drive() {
   ReplayResult result;
   result.summary = run_.summarise(loader_.bytes_loaded(), frames_);
   result.events_written = run_.close_events();
-  result.trace = run_.take_trace();
+  if (input_.keep_trace) result.trace = run_.take_trace();
   if (filler_) result.faults = filler_->faults();
   return result;
 }

@@ -36,6 +36,8 @@ struct ReplayInput {
   bool load_packs = true;           // false: zones are accounted for, no pack is read
   FixSource* fixes = nullptr;       // computes corrections while it runs
   RunObserver* observer = nullptr;  // watches
+  EvictionOrderMaker eviction{};    // nothing: least recently used
+  bool keep_trace = true;           // false: the result has none
 };
 
 struct ReplayResult {

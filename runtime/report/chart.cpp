@@ -74,15 +74,16 @@ void draw_grid(Svg& svg, const Chart& chart, const ChartScale& scale) {
   }
 }
 
-void draw_time_axis(Svg& svg, const ChartScale& scale, double y) {
-  const Ticks times = make_ticks(0, scale.duration_s, static_cast<int>(scale.width / kTimeTick_px));
+void draw_time_axis(Svg& svg, const Chart& chart, const ChartScale& scale, double y) {
+  const Ticks times = make_ticks(0, scale.duration_s, static_cast<int>(scale.width / kTimeTick_px),
+                                 chart.axis_quantity);
   for (std::size_t i = 0; i < times.values.size(); ++i) {
     const double x = scale.x(times.values[i]);
     svg.line({x, y}, {x, y + 4}, {.stroke = kWall});
     svg.text({x, y + 17}, times.labels[i],
              {.size = kSmall, .color = kQuiet, .anchor = Anchor::kMiddle});
   }
-  svg.text({scale.right(), y + 32}, "seconds since the start",
+  svg.text({scale.right(), y + 32}, chart.axis,
            {.size = kSmall, .color = kQuiet, .anchor = Anchor::kEnd});
 }
 
@@ -189,7 +190,7 @@ Svg draw_chart(const Chart& chart) {
   draw_limit(svg, chart, scale);
   draw_series(svg, chart, scale);
   if (!chart.timeline.empty()) draw_timeline(svg, chart, scale);
-  draw_time_axis(svg, scale, scale.bottom() + band);
+  draw_time_axis(svg, chart, scale, scale.bottom() + band);
   draw_end_values(svg, chart, scale);
   std::string plot;
   for (const double value :

@@ -9,7 +9,8 @@
 #include "runtime/report/ticks.hpp"
 
 // Values over the time of a run, from zero up, with their context: a limit, the zone the robot was
-// in, spans of time in which something went wrong. Times are seconds since the start of the run.
+// in, spans of time in which something went wrong. Times are seconds since the start of the run;
+// with another `axis`, what that says.
 namespace zonepack::report {
 
 struct Sample {
@@ -56,6 +57,8 @@ struct Chart {
   Quantity quantity = Quantity::kNumber;
   std::string unit;       // after numbers (" m"); empty for counts and bytes
   double duration_s = 0;  // end of the time axis, unless the last sample is later
+  std::string axis = "seconds since the start";
+  Quantity axis_quantity = Quantity::kNumber;
   double width_px = 900;
   double plot_height_px = 190;
 };

@@ -120,6 +120,11 @@ ByteCount extra_fixed_bytes(const Catalog& catalog, const MapTerms& terms) noexc
   return bytes;
 }
 
+Catalog charged_on(Catalog catalog, const MapTerms& terms) {
+  catalog.fixed_bytes += extra_fixed_bytes(catalog, terms);
+  return catalog;
+}
+
 MapTerms MapModel::terms_of_next(const MapTerms& terms) const {
   MapTerms next = terms;
   next.learned = nullptr;  // the cycle takes over what the one before it knows

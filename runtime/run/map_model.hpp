@@ -34,6 +34,8 @@ struct MapTerms {
 
 // What holding a map on these terms takes besides what the catalog charges.
 ByteCount extra_fixed_bytes(const Catalog& catalog, const MapTerms& terms) noexcept;
+// The catalog with these charged.
+Catalog charged_on(Catalog catalog, const MapTerms& terms);
 
 // A map in the shape in which the cycle takes it, with the limits to hold. Immutable; the catalog
 // must outlive it.

@@ -7,8 +7,7 @@ namespace zonepack {
 
 Outcome<std::shared_ptr<MapVersion>> MapVersion::make(std::uint32_t number, Catalog catalog,
                                                       const MapTerms& terms) {
-  catalog.fixed_bytes += extra_fixed_bytes(catalog, terms);
-  std::shared_ptr<MapVersion> map(new MapVersion(number, std::move(catalog)));
+  std::shared_ptr<MapVersion> map(new MapVersion(number, charged_on(std::move(catalog), terms)));
   auto model = MapModel::make(map->catalog_, terms);
   if (!model) return model.error();
   map->model_ = std::move(*model);
@@ -24,12 +23,13 @@ Outcome<void> MapVersion::prepare(const CycleConfig& config, ZoneLoader& loader,
                                   ZoneDirectory* directory, const EvictionOrderMaker& eviction) {
   const MapModel& map = *model_;
   const ResidencyLimits& limits = map.limits;
-  const EvictionPlace place{
-      map.needs, Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes)};
+  const EvictionPlace place{map.needs,
+                            Residency::slots_within(limits.budget, limits.fixed, limits.slot_bytes),
+                            transitions()};
   if (eviction) {
     eviction_ = eviction(place);
   } else if (eviction_rule_ == EvictionRule::kExpected) {
-    eviction_ = std::make_unique<ExpectedUse>(place, *transitions_);
+    eviction_ = make_expected_use(place);
   }
   memory_.emplace(map.needs.size(), map.limits, eviction_.get());
   if (auto pinned = map.pin(*memory_); !pinned) return pinned;

@@ -119,8 +119,7 @@ CycleConfig cycle_config(const Settings& settings) {
 }
 
 bool has_habits(const Settings& settings) {
-  return settings.preload.learn || !settings.preload.transitions.empty() ||
-         settings.memory.eviction == EvictionRule::kExpected;
+  return uses_habits(settings.preload) || settings.memory.eviction == EvictionRule::kExpected;
 }
 
 Outcome<LearnedTransitions> load_transitions(const std::string& path) {
@@ -139,8 +138,8 @@ Outcome<LearnedTransitions> load_transitions(const std::string& path) {
   return std::move(learned).value();
 }
 
-MapTerms map_terms(const RunChoices& choices, const RunInputs& inputs) {
-  const Settings& settings = inputs.settings;
+MapTerms map_terms(const RunChoices& choices, const Settings& settings,
+                   std::shared_ptr<const LearnedTransitions> learned) {
   MapTerms terms;
   terms.budget = choices.budget ? choices.budget : settings.memory.budget;
   terms.default_most = default_budget_limit();
@@ -151,7 +150,7 @@ MapTerms map_terms(const RunChoices& choices, const RunInputs& inputs) {
   terms.rates.decode = static_cast<std::uint64_t>(settings.loading.decode_rate);
   terms.period_ns = static_cast<std::int64_t>(1e9 / settings.cycle.period_hz + 0.5);
   terms.habits = has_habits(settings);
-  terms.learned = inputs.learned;
+  terms.learned = std::move(learned);
   terms.eviction = settings.memory.eviction;
   return terms;
 }

@@ -49,8 +49,11 @@ ByteCount default_budget_limit();
 CycleConfig cycle_config(const Settings& settings);
 // Whether a run by these settings holds a table of Transitions.
 bool has_habits(const Settings& settings);
-// With `learned` of the inputs.
-MapTerms map_terms(const RunChoices& choices, const RunInputs& inputs);
+MapTerms map_terms(const RunChoices& choices, const Settings& settings,
+                   std::shared_ptr<const LearnedTransitions> learned);
+inline MapTerms map_terms(const RunChoices& choices, const RunInputs& inputs) {
+  return map_terms(choices, inputs.settings, inputs.learned);
+}
 
 // A file as zoned learn writes it. Failures name it.
 Outcome<LearnedTransitions> load_transitions(const std::string& path);

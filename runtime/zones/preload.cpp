@@ -85,7 +85,7 @@ void Preload::smooth(const PoseEstimate& pose) noexcept {
 }
 
 void Preload::update(const PoseEstimate& pose, ZoneId zone) noexcept {
-  if (!pose.valid || zone == kNoZone) return;
+  if (!pose.valid || zone == kNoZone || settings_.off) return;
   smooth(pose);
   const Point2 point{pose.T_map_base.x_m, pose.T_map_base.y_m};
   const double three_sigma_m = 3 * position_sigma_m(pose.covariance);

@@ -28,11 +28,17 @@ struct PreloadSettings {
   double hold_s = 0.3;             // an approach not seen for this long is given up
   double most_turn_rad = 1.5;      // an arc is followed this far; then the path goes straight on
   double most_reach_m = 20;        // and no path is followed farther
+  bool off = false;                // nothing is approached: for comparison (zoned evaluate)
   // What Transitions are used for (Cycle), besides this path:
   std::string transitions;  // file of what was learned; empty: none
   bool learn = false;       // the run goes on learning
   double pays = 0.5;        // seconds saved for each second of reading that may be for nothing
 };
+
+// Whether what was learned of the robot's habits is used.
+inline bool uses_habits(const PreloadSettings& settings) noexcept {
+  return settings.learn || !settings.transitions.empty();
+}
 
 // Which zones are being approached: those whose portal the robot's path crosses within the horizon
 //

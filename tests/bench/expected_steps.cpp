@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
   const ZoneGraph graph = grid(side);
   const std::vector<ZoneNeed> needs(graph.zone_count(), ZoneNeed{1, 1});
   const Transitions transitions(graph);
-  ExpectedUse order({needs, held}, transitions);
+  ExpectedUse order({needs, held, &transitions});
   std::vector<ZoneLink> links(needs.size());
   const std::vector<ZoneTimes> times(needs.size());
   ZoneList list(links);

@@ -48,6 +48,9 @@ ARROWS = {
                     " runtime/settings runtime/state",
     "runtime/replay": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
                       " runtime/odometry runtime/pack_format runtime/recording runtime/run runtime/settings",
+    "runtime/evaluate": "platform platform/base runtime/control runtime/evaluate/policies runtime/map runtime/memory"
+                        " runtime/pack_format runtime/pack_format/file runtime/recording runtime/replay runtime/report"
+                        " runtime/run runtime/settings",
     "runtime/evaluate/policies": "platform/base runtime/memory",
     "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
     "runtime/listen": "platform platform/base platform/sim runtime/calibrate runtime/live runtime/odometry runtime/run"
@@ -55,7 +58,7 @@ ARROWS = {
     "runtime/localize/replay": "platform platform/base runtime/client runtime/localize/camera runtime/localize/check"
                                " runtime/localize/features runtime/localize/lost runtime/localize/query runtime/map"
                                " runtime/odometry runtime/replay runtime/report runtime/run",
-    "runtime/zoned": "platform platform/command_line platform/version runtime/calibrate runtime/listen runtime/live"
+    "runtime/zoned": "platform platform/base platform/command_line platform/version runtime/calibrate runtime/evaluate runtime/listen runtime/live"
                      " runtime/pack_format/file"
                      " runtime/recording runtime/replay runtime/report",
     "runtime/ctl/commands": "platform platform/base runtime/control runtime/odometry runtime/pack_format/file"
@@ -93,7 +96,7 @@ ARROWS = {
     "packer/decode": "packer/record platform/base runtime/pack_format runtime/pack_format/file",
     "packer/build": "packer/encode packer/record packer/sources packer/zones platform platform/base platform/version"
                     " runtime/pack_format/file",
-    "packer/update": "packer/align packer/build packer/decode packer/encode packer/record packer/sources packer/zones"
+    "packer/update": "packer/align packer/build packer/decode packer/encode packer/record packer/sources packer/zones platform"
                      " platform/base runtime/pack_format/file",
     "packer/verify": "packer/decode packer/record packer/zones platform platform/base runtime/pack_format"
                      " runtime/pack_format/file",

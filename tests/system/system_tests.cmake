@@ -25,6 +25,9 @@ if(TARGET zonepack AND TARGET zoned)
   add_test(NAME system/replay
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/replay_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
+  add_test(NAME system/evaluate
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/evaluate/evaluate_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
   add_test(NAME system/report
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/report_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/control/eviction_rule.hpp"
 #include "runtime/memory/eviction_order.hpp"
 
 namespace zonepack {
@@ -13,6 +14,7 @@ namespace zonepack {
 struct NamedEviction {
   std::string_view name;
   EvictionOrderMaker make;
+  EvictionRule rule = EvictionRule::kLru;  // by which the robot's tables are charged
 };
 
 // All that `zoned evaluate --eviction` knows, in the order in which they are shown; lru first.

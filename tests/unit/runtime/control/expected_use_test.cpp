@@ -35,7 +35,7 @@ class ExpectedUseTest : public testing::Test {
   const ZoneGraph graph = ward();
   const std::vector<ZoneNeed> needs{kRooms + 1, ZoneNeed{1, 1}};
   Transitions transitions{graph};
-  ExpectedUse order{{needs, kSlots}, transitions};
+  ExpectedUse order{{needs, kSlots, &transitions}};
   std::vector<ZoneLink> links{needs.size()};
   std::vector<ZoneTimes> times{needs.size()};
   ZoneList held{links};

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "packer/build/progress.hpp"
+#include "platform/progress.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
-namespace zonepack::packer {
+namespace zonepack {
 namespace {
 
 constexpr std::chrono::milliseconds kRedraw{100};
@@ -54,4 +55,4 @@ void Progress::finish(const std::string& note) {
   out_ << stage_ << ": " << note << " in " << seconds_text(elapsed) << std::endl;
 }
 
-}  // namespace zonepack::packer
+}  // namespace zonepack

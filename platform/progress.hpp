@@ -8,7 +8,7 @@
 #include <ostream>
 #include <string>
 
-namespace zonepack::packer {
+namespace zonepack {
 
 // Reports the progress of a long stage: on a terminal by a line that is redrawn (count, rate, time
 // left), else by one line when the stage ends.
@@ -38,4 +38,4 @@ class Progress {
   std::mutex mutex_;
 };
 
-}  // namespace zonepack::packer
+}  // namespace zonepack
