@@ -17,6 +17,9 @@ constexpr double kMostView_m = 20;
 // How long before a zone is entered its path gives it away at least: a load that takes no longer is
 // not made earlier.
 constexpr double kPathGives_s = 0.5;
+// A likely zone is loaded so many times its loading before it is expected: until then a step of the
+// robot may show better what comes.
+constexpr double kEarly = 3;
 
 // To the nearest thousandth, by arithmetic that gives the same on every machine.
 std::int32_t thousandths(double value) noexcept {
@@ -104,7 +107,7 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
   if (memory_.has_order()) {
     memory_.begin_cycle({now_ns, tracker_.zone(), steps_.before(), route_ahead()});
   }
-  const Wanted wanted = list_wanted();
+  const Wanted wanted = list_wanted(now_ns);
   // The first is not the robot's own where that is of a layer that is not used.
   const bool own_first = tracker_.zone() == kNoZone || graph_.loadable(tracker_.zone());
   zone_keeper_.keep(now_ns, {{wanted.zones.data(), wanted.count},
@@ -112,7 +115,8 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
                              wanted.needed,
                              wanted.useful,
                              own_first && (!state_.lost || state_.pose.valid),
-                             &foresight_});
+                             &foresight_,
+                             !route_ahead().empty()});
 
   state_.zone_resident = state_.zone != kNoZone && memory_.resident(state_.zone);
   state_.map_ready = state_.pose.trusted && state_.zone_resident;
@@ -287,12 +291,12 @@ CommandReply Cycle::obey(const Command& command, std::int64_t now_ns) noexcept {
 
 // The robot's zone on the route, searched from where it was: a route may lead through a zone twice.
 void Cycle::step_on_route() noexcept {
-  const auto end = route_.begin() + static_cast<std::ptrdiff_t>(route_length_);
-  const auto from = route_.begin() + static_cast<std::ptrdiff_t>(route_place_);
-  auto place = std::find(from, end, tracker_.zone());
-  if (place == end) place = std::find(route_.begin(), from, tracker_.zone());
-  if (place == from && tracker_.zone() != *from) return;  // off the route, or none
-  if (place != from || from != end) route_place_ = static_cast<std::size_t>(place - route_.begin());
+  for (std::size_t i = 0; i < route_length_; ++i) {
+    const std::size_t place = (route_place_ + i) % route_length_;
+    if (route_[place] != tracker_.zone()) continue;
+    route_place_ = place;
+    return;
+  }
 }
 
 void Cycle::learn_step(std::int64_t t_ns) noexcept {
@@ -324,10 +328,14 @@ void Cycle::foresee() noexcept {
     const double saved_s = share * (load_s - kPathGives_s);
     if (ahead.empty() && saved_s < pays_ * (1 - share) * load_s) continue;
     if (ahead.empty() && saved_s <= 0) continue;
-    likely_[likely_count_++] = coming.zone;
+    const double early_s = static_cast<double>(coming.seconds) - kEarly * load_s;
+    likely_[likely_count_++] = {coming.zone,
+                                ahead.empty() && early_s > 0
+                                    ? steps_.since_ns() + static_cast<std::int64_t>(early_s * 1e9)
+                                    : steps_.since_ns()};
   }
   // The destination, however far, takes the last place.
-  if (!ahead.empty() && likely_count_ == likely_.size()) likely_.back() = ahead.back();
+  if (!ahead.empty() && likely_count_ == likely_.size()) likely_.back().zone = ahead.back();
 }
 
 void Cycle::follow_zones(ZoneId before, std::int64_t now_ns) noexcept {
@@ -356,7 +364,7 @@ void Cycle::Wanted::add(ZoneId zone) noexcept {
   zones[count++] = zone;
 }
 
-Cycle::Wanted Cycle::list_wanted() const noexcept {
+Cycle::Wanted Cycle::list_wanted(std::int64_t now_ns) const noexcept {
   Wanted wanted;
   wanted.graph = &graph_;
   wanted.add(tracker_.zone());
@@ -374,11 +382,12 @@ Cycle::Wanted Cycle::list_wanted() const noexcept {
   wanted.urgent = wanted.count;
   wanted.add(state_.sought);
   for (const Approach& approach : preload_.approaches()) wanted.add(approach.zone);
-  want_route(wanted);
   wanted.needed = wanted.count;
   want_view(wanted);
   wanted.useful = wanted.count;
-  for (std::size_t i = 0; i < likely_count_; ++i) wanted.add(likely_[i]);
+  for (std::size_t i = 0; i < likely_count_; ++i) {
+    if (now_ns >= likely_[i].from_ns) wanted.add(likely_[i].zone);
+  }
   return wanted;
 }
 
@@ -387,12 +396,6 @@ void Cycle::want_view(Wanted& wanted) const noexcept {
   if (view_m_ <= 0 || !state_.pose.valid || state_.pose.t_ns > view_until_ns_) return;
   const ZonesInView view(graph_, state_.pose.T_map_base, tracker_.pose_zone(), view_m_);
   for (const ZoneId zone : view.zones()) wanted.add(zone);
-}
-
-// The next two zones of a hinted route, while the robot is on it.
-void Cycle::want_route(Wanted& wanted) const noexcept {
-  const std::span<const ZoneId> ahead = route_ahead();
-  for (std::size_t i = 0; i < 2 && i < ahead.size(); ++i) wanted.add(ahead[i]);
 }
 
 // The zones of the route after the robot's own; none when it is not on the route.

@@ -164,8 +164,7 @@ class Cycle {
     const ZoneGraph* graph = nullptr;
     void add(ZoneId zone) noexcept;
   };
-  Wanted list_wanted() const noexcept;
-  void want_route(Wanted& wanted) const noexcept;
+  Wanted list_wanted(std::int64_t now_ns) const noexcept;
   void want_view(Wanted& wanted) const noexcept;
   std::span<const ZoneId> route_ahead() const noexcept;
   void step_on_route() noexcept;
@@ -196,7 +195,11 @@ class Cycle {
   std::span<const float> load_s_;
   ZoneSteps steps_;
   Foresight foresight_;
-  std::array<ZoneId, kMostLikely> likely_{};  // to be loaded before they are approached
+  struct Likely {
+    ZoneId zone = kNoZone;
+    std::int64_t from_ns = 0;  // earlier there is time to learn more
+  };
+  std::array<Likely, kMostLikely> likely_{};  // to be loaded before they are approached
   std::size_t likely_count_ = 0;
   std::array<CommandReply, kMostCommands> replies_{};
   std::size_t reply_count_ = 0;

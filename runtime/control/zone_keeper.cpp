@@ -73,7 +73,7 @@ ZoneKeeper::Demand ZoneKeeper::demand_of(std::size_t place, const Wishes& wishes
   if (place == 0 && wishes.with_own) return Demand::kOwn;
   if (place < wishes.urgent) return Demand::kUrgent;
   if (place < wishes.needed) return Demand::kPossible;
-  return place < wishes.useful ? Demand::kUseful : Demand::kLikely;
+  return Demand::kUseful;
 }
 
 void ZoneKeeper::keep(std::int64_t now_ns, const Wishes& wishes) noexcept {
@@ -81,7 +81,10 @@ void ZoneKeeper::keep(std::int64_t now_ns, const Wishes& wishes) noexcept {
   ZP_REQUIRE(wanted.size() <= kMaxWanted);
   drop_unwanted(wanted);
   does_not_fit_ = kNoZone;
-  for (std::size_t place = 0; place < wanted.size(); ++place) see_to(place, wishes, now_ns);
+  for (std::size_t place = 0; place < std::min(wishes.useful, wanted.size()); ++place) {
+    see_to(place, wishes, now_ns);
+  }
+  see_to_likely(wishes, now_ns);
   keep_pinned(now_ns);
   set_blocked(does_not_fit_);
   std::copy(wanted.begin(), wanted.end(), wanted_.begin());
@@ -112,8 +115,7 @@ void ZoneKeeper::see_to(std::size_t place, const Wishes& wishes, std::int64_t no
   const std::span<const ZoneId> wanted = wishes.zones;
   const ZoneId zone = wanted[place];
   const Demand demand = demand_of(place, wishes);
-  if (zone == loading_) loads_useful_ = demand <= Demand::kUseful;
-  if (demand == Demand::kLikely) return see_to_likely(zone, *wishes.foresight, now_ns);
+  if (zone == loading_) loads_useful_ = demand == Demand::kUseful;
   memory_.protect(zone);
   if (memory_.state(zone) != ZoneState::kAbsent || !may_start(zone, demand, now_ns)) return;
   const Purpose purpose = demand == Demand::kOwn ? Purpose::kOwnZone : Purpose::kApproach;
@@ -129,12 +131,21 @@ void ZoneKeeper::see_to(std::size_t place, const Wishes& wishes, std::int64_t no
   }
 }
 
-void ZoneKeeper::see_to_likely(ZoneId zone, const Foresight& foresight,
-                               std::int64_t now_ns) noexcept {
-  memory_.unprotect(zone);  // it may have been more
-  if (loading_ != kNoZone || memory_.state(zone) != ZoneState::kAbsent) return;
-  if (!may_start(zone, Demand::kLikely, now_ns) || !make_colder_room(zone, foresight)) return;
-  loads_useful_ = admit(zone, Purpose::kApproach).ok();
+// Likely zones are not protected: what is needed takes their room as it takes that of any other.
+void ZoneKeeper::see_to_likely(const Wishes& wishes, std::int64_t now_ns) noexcept {
+  const std::span<const ZoneId> likely =
+      wishes.zones.subspan(std::min(wishes.useful, wishes.zones.size()));
+  for (const ZoneId zone : likely) memory_.unprotect(zone);  // it may have been needed
+  for (const ZoneId zone : likely) {
+    if (zone == loading_) loads_useful_ = !wishes.sure;
+    if (loading_ != kNoZone || memory_.state(zone) != ZoneState::kAbsent) continue;
+    if (may_start(zone, Demand::kLikely, now_ns) && make_colder_room(zone, *wishes.foresight) &&
+        admit(zone, Purpose::kApproach)) {
+      loads_useful_ = !wishes.sure;
+    } else if (wishes.sure) {
+      return;
+    }
+  }
 }
 
 // Whether the zone fits, if need be once zones are evicted that are worth less: the least recently

@@ -61,6 +61,8 @@ class ZoneKeeper {
                              // zones that foresight says are worth less
     bool with_own = true;    // the first is the robot's own zone
     const Foresight* foresight = nullptr;  // needed for likely ones
+    bool sure = false;  // likely ones are the way ahead, in its order: none is loaded before one
+                        // that comes sooner, and only the robot's own zone breaks a load off
   };
   void keep(std::int64_t now_ns, const Wishes& wishes) noexcept;
   void keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent,
@@ -104,7 +106,7 @@ class ZoneKeeper {
   enum class Demand : std::uint8_t { kLikely, kUseful, kPossible, kUrgent, kOwn };
   static Demand demand_of(std::size_t place, const Wishes& wishes) noexcept;
   void see_to(std::size_t place, const Wishes& wishes, std::int64_t now_ns) noexcept;
-  void see_to_likely(ZoneId zone, const Foresight& foresight, std::int64_t now_ns) noexcept;
+  void see_to_likely(const Wishes& wishes, std::int64_t now_ns) noexcept;
   bool make_colder_room(ZoneId zone, const Foresight& foresight) noexcept;
   bool may_start(ZoneId zone, Demand demand, std::int64_t now_ns) noexcept;
   void keep_pinned(std::int64_t now_ns) noexcept;

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "runtime/run/stamp_text.hpp"
 
@@ -16,8 +17,31 @@ namespace zonepack {
 namespace {
 
 constexpr std::string_view kMark = "# command ";
-constexpr std::string_view kExpected = "expected # command RECEIVED lost|seek [ZONE]|ask_turn";
-constexpr std::array kKinds = {Command::Kind::kLost, Command::Kind::kSeek, Command::Kind::kAskTurn};
+constexpr std::string_view kExpected =
+    "expected # command RECEIVED lost|seek [ZONE]|ask_turn|route_hint [ZONE/ZONE...]";
+constexpr std::array kKinds = {Command::Kind::kLost, Command::Kind::kSeek, Command::Kind::kAskTurn,
+                               Command::Kind::kRouteHint};
+
+// Names apart by a slash, which no name holds; blanks around it do not count.
+Outcome<TimedCommand> with_route(TimedCommand hint, std::string_view names,
+                                 const std::function<ZoneId(std::string_view)>& find_zone) {
+  Command& command = hint.command;
+  for (bool more = true; more;) {
+    const std::size_t slash = names.find('/');
+    more = slash != std::string_view::npos;
+    std::string_view name = names.substr(0, slash);
+    if (more) names.remove_prefix(slash + 1);
+    while (!name.empty() && name.front() == ' ') name.remove_prefix(1);
+    while (!name.empty() && name.back() == ' ') name.remove_suffix(1);
+    const ZoneId zone = find_zone(name);
+    if (zone == kNoZone) return failure("the map has no zone " + std::string(name));
+    if (command.route_length == Command::kMostRoute) {
+      return failure("a route of over " + std::to_string(Command::kMostRoute) + " zones");
+    }
+    command.route[command.route_length++] = zone;
+  }
+  return hint;
+}
 
 Outcome<TimedCommand> parse(const std::string& line,
                             const std::function<ZoneId(std::string_view)>& find_zone) {
@@ -35,6 +59,7 @@ Outcome<TimedCommand> parse(const std::string& line,
   if (kind == kKinds.end()) return failure("\"" + word + "\" is not a command");
   out.command.kind = *kind;
   if (zone.empty()) return out;
+  if (*kind == Command::Kind::kRouteHint) return with_route(std::move(out), zone, find_zone);
   if (*kind != Command::Kind::kSeek) return failure(word + " takes no zone");
   out.command.zone = find_zone(zone);
   if (out.command.zone == kNoZone) return failure("the map has no zone " + zone);

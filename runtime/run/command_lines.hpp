@@ -15,7 +15,9 @@
 //   # command RECEIVED WORD [ZONE]
 //
 // RECEIVED: seconds, as of a fix. WORD: lost; seek, with a zone's name, or without one when no zone
-// is sought any more; ask_turn. A reader that knows only fixes passes over it.
+// is sought any more; ask_turn. A program that plans missions may add route_hint, with the zones of
+// a way in their order, apart by /, or without one when it ends. A reader that knows only fixes
+// passes over it.
 namespace zonepack {
 
 struct TimedCommand {
