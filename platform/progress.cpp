@@ -43,7 +43,8 @@ void Progress::draw(std::size_t done, Clock::time_point now) {
   const std::size_t filled = total_ == 0 ? kBarWidth : kBarWidth * std::min(done, total_) / total_;
   const double left = rate > 0 ? static_cast<double>(total_ - std::min(done, total_)) / rate : 0;
   char numbers[96];
-  std::snprintf(numbers, sizeof numbers, "%zu/%zu %s, %.0f/s, ", done, total_, unit_.c_str(), rate);
+  std::snprintf(numbers, sizeof numbers, "%zu/%zu %s, %.*f/s, ", done, total_, unit_.c_str(),
+                rate < 9.95 ? 1 : 0, rate);
   out_ << kClearLine << stage_ << " [" << std::string(filled, '#')
        << std::string(kBarWidth - filled, '.') << "] " << numbers << seconds_text(left) << " left"
        << std::flush;

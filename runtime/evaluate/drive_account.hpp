@@ -47,8 +47,8 @@ class DriveAccount final : public RunObserver {
  private:
   struct Zone {
     bool wanted = false, pinned = false, resident = false, held = false, required = false;
-    bool entered = false;    // the robot was in it since its last load began
-    std::uint64_t load = 0;  // its last, by the number of loads
+    bool entered = false;  // the robot was in it since its last load began
+    std::size_t load = 0;  // its last, by the number of loads
     std::int64_t load_began_ns = 0;
     std::uint64_t wanted_since = 0;  // by the number of requests
   };
@@ -56,7 +56,7 @@ class DriveAccount final : public RunObserver {
   // A zone of a step, by the load that it was held by.
   struct HeldBy {
     ZoneId zone;
-    std::uint64_t load;
+    std::size_t load;
   };
 
   void enter(ZoneId zone);

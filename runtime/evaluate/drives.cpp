@@ -6,9 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "platform/can_log.hpp"
 #include "runtime/recording/recording_reader.hpp"
-#include "runtime/run/log_faults.hpp"
 #include "runtime/run/log_match.hpp"
 
 namespace zonepack {
@@ -50,7 +48,7 @@ Outcome<void> read_log(Drive& drive, const Settings& settings, std::vector<std::
   }
   LogMatch match(log);
   while (const auto frame = match.next()) drive.frames.push_back(*frame);
-  tell_log_faults(files.can, log.summary());
+  drive.log = log.summary();
   if (drive.frames.empty()) return failure(files.can + ": the CAN log holds no frame");
   const std::string mismatch = match.mismatch(settings.odometry.wheels, files.can, log.summary());
   if (!mismatch.empty()) warnings.push_back(mismatch);

@@ -9,6 +9,7 @@
 
 #include "platform/base/failure.hpp"
 #include "platform/can_bus.hpp"
+#include "platform/can_log.hpp"
 #include "runtime/control/command.hpp"
 #include "runtime/control/line_edge.hpp"
 #include "runtime/map/catalog.hpp"
@@ -37,6 +38,7 @@ struct Drive {
   std::vector<PoseCorrection> corrections;
   std::optional<TruthTrack> truth;
   std::vector<BaselineRow> baseline;  // what RTAB-Map did on it
+  CanLogSummary log;                  // what was wrong with a log
   LogTime time;                       // of a log
 
   // Of a recording: its cycles, each with what came since the one before. Loads and offers of maps

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <mutex>
+#include <optional>
 #include <utility>
 
 #include "platform/base/counted.hpp"
@@ -17,6 +17,7 @@
 #include "runtime/evaluate/evaluate_report.hpp"
 #include "runtime/evaluate/evaluation.hpp"
 #include "runtime/evaluate/jobs.hpp"
+#include "runtime/run/log_faults.hpp"
 #include "runtime/run/output_check.hpp"
 #include "runtime/run/run_inputs.hpp"
 
@@ -76,6 +77,7 @@ Outcome<void> read_drives(const EvaluateArguments& arguments, Evaluation& evalua
   for (std::size_t i = 0; i < read.size(); ++i) {
     for (const std::string& text : warnings[i]) note("warning: " + text);
     if (!*read[i]) return read[i]->error();
+    if (!(*read[i])->recorded()) tell_log_faults(arguments.drives[i].can, (*read[i])->log);
     evaluation.drives.push_back(std::move(**read[i]));
   }
   for (EvaluatedMap& map : evaluation.maps) {
