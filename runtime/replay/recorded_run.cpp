@@ -36,6 +36,11 @@ Outcome<Catalog> catalog_of(const RecordingReader& recording, const Settings& se
 MapTerms recorded_terms(const RecordingReader& recording, const Settings& settings) {
   MapTerms terms = recording.preface().terms;
   terms.habits = has_habits(settings);
+  if (!terms.habits || !recording.checkpoint()) return terms;
+  if (const auto& learned = recording.checkpoint()->transitions; !learned.empty()) {
+    auto read = read_transitions(learned);
+    if (read) terms.learned = std::make_shared<LearnedTransitions>(std::move(read).value());
+  }
   return terms;
 }
 
