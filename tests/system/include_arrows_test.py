@@ -49,12 +49,14 @@ ARROWS = {
     "runtime/replay": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
                       " runtime/odometry runtime/pack_format runtime/recording runtime/run runtime/settings",
     "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
+    "runtime/learn": "platform platform/base runtime/map runtime/pack_format/file runtime/recording runtime/replay"
+                     " runtime/run runtime/zones",
     "runtime/listen": "platform platform/base platform/sim runtime/calibrate runtime/live runtime/odometry runtime/run"
                       " runtime/settings",
     "runtime/localize/replay": "platform platform/base runtime/client runtime/localize/camera runtime/localize/check"
                                " runtime/localize/features runtime/localize/lost runtime/localize/query runtime/map"
                                " runtime/odometry runtime/replay runtime/report runtime/run",
-    "runtime/zoned": "platform platform/command_line platform/version runtime/calibrate runtime/listen runtime/live"
+    "runtime/zoned": "platform platform/command_line platform/version runtime/calibrate runtime/learn runtime/listen runtime/live"
                      " runtime/pack_format/file"
                      " runtime/recording runtime/replay runtime/report",
     "runtime/ctl/commands": "platform platform/base runtime/control runtime/odometry runtime/pack_format/file"
