@@ -37,7 +37,7 @@ ARROWS = {
     "runtime/run": "platform platform/base runtime/control runtime/map runtime/memory runtime/odometry"
                    " runtime/pack_format runtime/pack_format/file runtime/report runtime/settings runtime/zones",
     "runtime/recording": "platform platform/base runtime/control runtime/odometry runtime/pack_format"
-                         " runtime/pack_format/file runtime/run",
+                         " runtime/pack_format/file runtime/run runtime/zones",
     "runtime/state": "platform platform/base runtime/control runtime/odometry runtime/pack_format"
                      " runtime/pack_format/file runtime/recording",
     "runtime/serve": "platform platform/base runtime/control runtime/map runtime/memory runtime/odometry"
@@ -45,7 +45,7 @@ ARROWS = {
                      " runtime/zones",
     "runtime/live": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
                     " runtime/odometry runtime/pack_format/file runtime/recording runtime/run runtime/serve"
-                    " runtime/settings runtime/state",
+                    " runtime/settings runtime/state runtime/zones",
     "runtime/replay": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
                       " runtime/odometry runtime/pack_format runtime/recording runtime/run runtime/settings",
     "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
