@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "platform/clock.hpp"
 #include "runtime/live/print_line.hpp"
 
 namespace zonepack {
@@ -29,6 +30,13 @@ LiveObservers::~LiveObservers() {
   log_thread.stop();
 }
 
+void LiveObservers::keep_habits(std::unique_ptr<HabitKeeper> keeper) {
+  habits_ = std::move(keeper);
+  if (!habits_) return;
+  run_.add_observer(*habits_);
+  recording.habits = [this] { return habits_->file(); };
+}
+
 std::optional<RunStart> LiveObservers::restore(const std::string& folder,
                                                const PoseFilterSettings& pose,
                                                std::int64_t now_ns) {
@@ -52,6 +60,9 @@ std::optional<RunStart> LiveObservers::restore(const std::string& folder,
     return true;
   };
   state_saver_.emplace(*state_store_, next, look, place, print_line);
+  if (habits_) {
+    state_saver_->also([this](bool at_end) { return habits_->save(monotonic_ns(), at_end); });
+  }
   if (!found.state) return std::nullopt;
   const RestoredStart guess = guess_from(*found.state, pose);
   return RunStart{now_ns, guess.T_map_base, guess.sigma_m, guess.sigma_rad};

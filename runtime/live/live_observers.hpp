@@ -10,6 +10,7 @@
 #include "platform/notify.hpp"
 #include "platform/spsc_queue.hpp"
 #include "runtime/live/event_messages.hpp"
+#include "runtime/live/habit_keeper.hpp"
 #include "runtime/live/live_control.hpp"
 #include "runtime/live/live_memory.hpp"
 #include "runtime/live/live_notes.hpp"
@@ -32,6 +33,9 @@ class LiveObservers {
   // All of it must outlive this object. quiet: only warnings are printed.
   LiveObservers(Run& run, LiveControl& control, LiveMemory& memory, bool quiet);
   ~LiveObservers();
+
+  // What the run learns; may be null. Before all that follows.
+  void keep_habits(std::unique_ptr<HabitKeeper> keeper);
 
   // Reads what the robot knew when it stopped, and arranges to save what it knows. folder: empty:
   // nothing is kept. The start that was saved, if any; a chosen start goes before it.
@@ -62,6 +66,7 @@ class LiveObservers {
   LiveControl& control_;
   LiveMemory& memory_;
   EventMessages messages_;
+  std::unique_ptr<HabitKeeper> habits_;
   std::optional<StateStore> state_store_;
   std::optional<StateSaver> state_saver_;
 };

@@ -34,7 +34,9 @@ LiveRun::LiveRun(RunInputs& inputs, std::shared_ptr<MapVersion> map, LiveMemory&
             .events = options_.events},
            std::move(map)),
       observers_(run_, control_, memory, options_.quiet),
-      lines_(kernel_gpio(), settings_.gpio) {}
+      lines_(kernel_gpio(), settings_.gpio) {
+  observers_.keep_habits(std::move(options_.habits));
+}
 
 // After a start that failed half way, threads may still use what is destroyed before them.
 LiveRun::~LiveRun() {

@@ -28,7 +28,8 @@ struct LiveOptions {
   std::string events;      // file; empty: none
   std::string record_can;  // file; empty: none
   RecordingChoice recording;
-  RecordingPreface preface;  // without the start
+  RecordingPreface preface;               // without the start
+  std::unique_ptr<HabitKeeper> habits{};  // what the run learns; null: nothing
   BuildInfo build;
   bool quiet = false;  // only warnings and errors on standard error
   bool allow_degraded = false;

@@ -11,6 +11,7 @@
 #include "platform/realtime.hpp"
 #include "platform/signals.hpp"
 #include "platform/storage.hpp"
+#include "runtime/live/habit_keeper.hpp"
 #include "runtime/live/live_memory.hpp"
 #include "runtime/live/live_run.hpp"
 #include "runtime/map/next_version.hpp"
@@ -88,6 +89,14 @@ Outcome<void> conclude(const RunArguments& arguments, LiveRun& run) {
 // The run, from what was read of it to its end.
 Outcome<void> drive(const RunArguments& arguments, RunInputs& inputs,
                     std::vector<HandedFile>& handed, EndGuard& guard) {
+  const std::string folder = state_folder(inputs.settings);
+  const bool learns = inputs.settings.preload.learn;
+  if (learns) {
+    std::vector<std::string> notes;
+    inputs.learned =
+        go_on_learning(folder, std::move(inputs.learned), inputs.catalog.lineage, notes);
+    for (const std::string& text : notes) warn(text);
+  }
   MapTerms terms = map_terms(arguments, inputs);
   terms.lease_ns = static_cast<std::int64_t>(inputs.settings.serve.lease_s * 1e9);
   auto map = MapVersion::make(1, std::move(inputs.catalog), terms);
@@ -124,9 +133,10 @@ Outcome<void> drive(const RunArguments& arguments, RunInputs& inputs,
                .events = arguments.events,
                .record_can = arguments.record_can,
                .recording = {.file = arguments.record,
-                             .state_folder = state_folder(inputs.settings),
+                             .state_folder = folder,
                              .flight_bytes = inputs.settings.recorder.bytes},
                .preface = std::move(*preface),
+               .habits = learns ? std::make_unique<HabitKeeper>(folder, terms.learned) : nullptr,
                .build = {arguments.program, arguments.commit},
                .quiet = arguments.quiet,
                .allow_degraded = arguments.allow_degraded});

@@ -35,6 +35,7 @@ Outcome<std::string> RunRecording::open(const RecordingChoice& choice,
   tap_ = std::make_unique<InputTap>(most_frames);
   writer_ = std::make_unique<InputWriter>(*tap_, preface.terms.period_ns, zones, file_.get(),
                                           flight_.get());
+  writer_->learns_by(habits);
   return warning;
 }
 

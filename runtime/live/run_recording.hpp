@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "platform/base/byte_count.hpp"
 #include "platform/base/failure.hpp"
@@ -30,6 +33,9 @@ class RunRecording final : public RunObserver {
   // recorder that cannot be opened is a warning, returned as a complete message or empty.
   Outcome<std::string> open(const RecordingChoice& choice, const RecordingPreface& preface,
                             std::size_t zones, std::uint32_t most_frames);
+
+  // For checkpoints: what the run learned, as a .zpt. Set before open(); may stay null.
+  std::function<std::vector<std::byte>()> habits;
 
   // A map that the run is going to be offered. Any thread.
   void add_map(const RecordedMap& map) {

@@ -9,10 +9,13 @@
 namespace zonepack {
 namespace {
 
-constexpr std::uint8_t kHasPose = 1, kFrozen = 2, kOtherMap = 4, kHeld = 8, kLost = 16;
+constexpr std::uint8_t kHasPose = 1, kFrozen = 2, kOtherMap = 4, kHeld = 8, kLost = 16,
+                       kLearned = 32;
 constexpr std::size_t kFixedRoom = 256;
 constexpr std::size_t kZoneRoom = 10;  // two varints of 32 bits
 constexpr std::size_t kMostZones = (kMostBlockBytes - kFixedRoom) / kZoneRoom / 2;
+// More is left out: zones have the rest of the block.
+constexpr std::size_t kMostLearned = kMostBlockBytes / 8;
 
 void write_zones(const std::vector<ZoneId>& zones, ByteWriter& out) {
   const std::size_t count = std::min(zones.size(), kMostZones / 2);
@@ -30,7 +33,9 @@ bool read_zones(ByteReader& in, std::vector<ZoneId>& zones) {
 }  // namespace
 
 std::vector<std::byte> write_checkpoint(const Checkpoint& checkpoint) {
-  std::vector<std::byte> bytes(kFixedRoom +
+  const bool learned =
+      !checkpoint.transitions.empty() && checkpoint.transitions.size() <= kMostLearned;
+  std::vector<std::byte> bytes(kFixedRoom + (learned ? checkpoint.transitions.size() : 0) +
                                kZoneRoom * (checkpoint.resident.size() + checkpoint.pinned.size() +
                                             checkpoint.route.size()));
   ByteWriter out(bytes);
@@ -40,7 +45,8 @@ std::vector<std::byte> write_checkpoint(const Checkpoint& checkpoint) {
   const bool other_map = checkpoint.map != 1 || checkpoint.offered_map != 0;
   out.u8(static_cast<std::uint8_t>((checkpoint.has_pose ? kHasPose : 0) |
                                    (checkpoint.frozen ? kFrozen : 0) | (other_map ? kOtherMap : 0) |
-                                   (checkpoint.held ? kHeld : 0) | (checkpoint.lost ? kLost : 0)));
+                                   (checkpoint.held ? kHeld : 0) | (checkpoint.lost ? kLost : 0) |
+                                   (learned ? kLearned : 0)));
   out.f64(checkpoint.T_map_base.x_m);
   out.f64(checkpoint.T_map_base.y_m);
   out.f64(checkpoint.T_map_base.yaw_rad);
@@ -60,6 +66,10 @@ std::vector<std::byte> write_checkpoint(const Checkpoint& checkpoint) {
     out.u32(checkpoint.offered_map);
   }
   if (checkpoint.lost) out.u32(checkpoint.sought);
+  if (learned) {
+    out.varint(checkpoint.transitions.size());
+    out.bytes(checkpoint.transitions);
+  }
   ZP_REQUIRE(out.ok());
   bytes.resize(out.size());
   return bytes;
@@ -97,6 +107,10 @@ Result<Checkpoint> read_checkpoint(ByteSpan content) {
     checkpoint.offered_map = in.u32();
   }
   if (checkpoint.lost) checkpoint.sought = in.u32();
+  if ((flags & kLearned) != 0) {
+    const ByteSpan learned = in.bytes(in.varint());
+    checkpoint.transitions.assign(learned.begin(), learned.end());
+  }
   if (!in.finished()) return ErrorCode::kBadStructure;
   return checkpoint;
 }
@@ -127,7 +141,13 @@ void RunMirror::on_event(const Event& event) {
     case EventKind::kEvicted:
       zones_[event.zone] = {};
       break;
-    case EventKind::kZoneEntered:
+    case EventKind::kZoneEntered: {
+      // What lies behind is not searched again: a route may lead through a zone twice.
+      const auto here = std::ranges::find(route_, event.zone);
+      if (here != route_.end()) route_.erase(route_.begin(), here);
+      use(event.zone);
+      break;
+    }
     case EventKind::kZoneWanted:
     case EventKind::kZoneUnwanted:
       use(event.zone);

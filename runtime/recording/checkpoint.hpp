@@ -28,16 +28,17 @@ struct Checkpoint {
   bool has_pose = false;
   Pose2 T_map_base;
   double sigma_m = 0, sigma_rad = 0;
-  std::uint32_t map = 1;          // number in the run of the map in use
-  std::uint32_t offered_map = 0;  // that is to replace it; 0: none
-  ZoneId zone = kNoZone;          // the robot's own
-  bool lost = false;              // a localizer searches the map
-  ZoneId sought = kNoZone;        // while lost: the zone that it waits for
-  bool frozen = false;            // by command
-  bool held = false;              // by the hold line
-  std::vector<Held> resident;     // least recently used first
-  std::vector<ZoneId> pinned;     // by command, besides those of the settings
-  std::vector<ZoneId> route;      // the hint in force
+  std::uint32_t map = 1;               // number in the run of the map in use
+  std::uint32_t offered_map = 0;       // that is to replace it; 0: none
+  ZoneId zone = kNoZone;               // the robot's own
+  bool lost = false;                   // a localizer searches the map
+  ZoneId sought = kNoZone;             // while lost: the zone that it waits for
+  bool frozen = false;                 // by command
+  bool held = false;                   // by the hold line
+  std::vector<Held> resident;          // least recently used first
+  std::vector<ZoneId> pinned;          // by command, besides those of the settings
+  std::vector<ZoneId> route;           // the hint in force
+  std::vector<std::byte> transitions;  // what the run learned, as a .zpt; empty: nothing
 };
 
 // The content of a checkpoint block. A map with more resident zones than a block has room for loses

@@ -65,6 +65,7 @@ void InputWriter::begin_block(const TappedCycle& cycle) {
   checkpoint.lost = head.lost;
   checkpoint.sought = head.sought;
   mirror_.describe(checkpoint);
+  if (habits_) checkpoint.transitions = habits_();
   flight_->begin_segment(checkpoint, gap);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -37,6 +38,9 @@ class InputWriter {
   // The map that events belong to from here on.
   void change_map(std::uint32_t number, std::size_t zones) { mirror_.change_map(number, zones); }
 
+  // For checkpoints: gives what the run learned, as a .zpt; may be null.
+  void learns_by(std::function<std::vector<std::byte>()> habits) { habits_ = std::move(habits); }
+
   // A map that a future cycle will be offered; any thread.
   void add_map(const RecordedMap& map);
 
@@ -61,6 +65,7 @@ class InputWriter {
   RecordingFile* file_;
   FlightRecorder* flight_;
   RunMirror mirror_;
+  std::function<std::vector<std::byte>()> habits_;
   CycleBlockWriter block_;
   std::vector<std::byte> sealed_;
   RecordedInput input_;

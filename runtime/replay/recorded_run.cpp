@@ -37,6 +37,11 @@ MapTerms recorded_terms(const RecordingReader& recording, const Settings& settin
   MapTerms terms = recording.preface().terms;
   terms.habits = has_habits(settings);
   terms.eviction = settings.memory.eviction;
+  if (!terms.habits || !recording.checkpoint()) return terms;
+  if (const auto& learned = recording.checkpoint()->transitions; !learned.empty()) {
+    auto read = read_transitions(learned);
+    if (read) terms.learned = std::make_shared<LearnedTransitions>(std::move(read).value());
+  }
   return terms;
 }
 

@@ -49,9 +49,11 @@ void StateSaver::stop() {
   end_thread();
   const StateGlimpse glimpse = look_();
   if (glimpse.pose.valid) save(glimpse);
+  save_also(true);
 }
 
 void StateSaver::watch() {
+  save_also(false);
   const StateGlimpse glimpse = look_();
   if (!glimpse.pose.valid) return;
   if (tried_ && glimpse.map == map_ && glimpse.zone == zone_ &&
@@ -71,8 +73,17 @@ void StateSaver::save(const StateGlimpse& glimpse) {
   state_.covariance = glimpse.pose.covariance;
   state_.trusted = glimpse.pose.trusted;
   const auto done = store_.save(state_);
+  if (done) ++saved_;
+  conclude(done);
+}
+
+void StateSaver::save_also(bool at_end) {
+  if (!also_) return;
+  if (const auto done = also_(at_end); !done) conclude(done);
+}
+
+void StateSaver::conclude(const Result<void>& done) {
   if (done) {
-    ++saved_;
     if (std::exchange(failing_, false)) report_(store_.folder() + ": state is saved again");
     return;
   }

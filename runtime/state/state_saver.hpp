@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "platform/realtime.hpp"
 #include "runtime/control/cycle.hpp"
@@ -38,6 +39,10 @@ class StateSaver {
              std::function<void(std::string)> report);
   ~StateSaver() { end_thread(); }
 
+  // Called by the thread that saves, after each look, and a last time at the end: saves what else
+  // there is. Before start(). A failure is reported as one of the state.
+  void also(std::function<Result<void>(bool at_end)> save) { also_ = std::move(save); }
+
   Result<void> start();
   // Saves a last time.
   void stop();
@@ -51,6 +56,8 @@ class StateSaver {
 
  private:
   void save(const StateGlimpse& glimpse);
+  void save_also(bool at_end);
+  void conclude(const Result<void>& done);
   void end_thread() noexcept;
 
   StateStore& store_;
@@ -58,6 +65,7 @@ class StateSaver {
   std::function<StateGlimpse()> look_;
   std::function<bool(const StateGlimpse&, SavedState&)> place_;
   std::function<void(std::string)> report_;
+  std::function<Result<void>(bool at_end)> also_;
   std::uint32_t map_ = 1;  // as saved, or tried to
   ZoneId zone_ = kNoZone;
   std::int64_t last_ns_ = 0;

@@ -199,6 +199,7 @@ LearnedTransitions save(const Transitions& transitions) {
 std::vector<std::byte> write_transitions(const LearnedTransitions& learned) {
   std::size_t room = kHeaderBytes + kFixedBytes + learned.contexts.size() * kMostContextBytes;
   for (const std::string& name : learned.zones) room += name.size() + 1;
+  ZP_REQUIRE(room >= kHeaderBytes + kFixedBytes);
   std::vector<std::byte> file(room);
   ByteWriter out(std::span<std::byte>(file).subspan(kHeaderBytes));
   out.bytes(std::as_bytes(std::span(learned.map_lineage)));

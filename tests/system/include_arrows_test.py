@@ -37,7 +37,7 @@ ARROWS = {
     "runtime/run": "platform platform/base runtime/control runtime/map runtime/memory runtime/odometry"
                    " runtime/pack_format runtime/pack_format/file runtime/report runtime/settings runtime/zones",
     "runtime/recording": "platform platform/base runtime/control runtime/odometry runtime/pack_format"
-                         " runtime/pack_format/file runtime/run",
+                         " runtime/pack_format/file runtime/run runtime/zones",
     "runtime/state": "platform platform/base runtime/control runtime/odometry runtime/pack_format"
                      " runtime/pack_format/file runtime/recording",
     "runtime/serve": "platform platform/base runtime/control runtime/map runtime/memory runtime/odometry"
@@ -45,7 +45,7 @@ ARROWS = {
                      " runtime/zones",
     "runtime/live": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
                     " runtime/odometry runtime/pack_format/file runtime/recording runtime/run runtime/serve"
-                    " runtime/settings runtime/state",
+                    " runtime/settings runtime/state runtime/zones",
     "runtime/replay": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
                       " runtime/odometry runtime/pack_format runtime/recording runtime/run runtime/settings",
     "runtime/evaluate": "platform platform/base runtime/control runtime/evaluate/policies runtime/map runtime/memory"
@@ -53,12 +53,15 @@ ARROWS = {
                         " runtime/run runtime/settings",
     "runtime/evaluate/policies": "platform/base runtime/memory",
     "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
+    "runtime/learn": "platform platform/base runtime/map runtime/pack_format/file runtime/recording runtime/replay"
+                     " runtime/run runtime/zones",
     "runtime/listen": "platform platform/base platform/sim runtime/calibrate runtime/live runtime/odometry runtime/run"
                       " runtime/settings",
     "runtime/localize/replay": "platform platform/base runtime/client runtime/localize/camera runtime/localize/check"
                                " runtime/localize/features runtime/localize/lost runtime/localize/query runtime/map"
                                " runtime/odometry runtime/replay runtime/report runtime/run",
-    "runtime/zoned": "platform platform/base platform/command_line platform/version runtime/calibrate runtime/evaluate runtime/listen runtime/live"
+    "runtime/zoned": "platform platform/base platform/command_line platform/version runtime/calibrate runtime/evaluate"
+                     " runtime/learn runtime/listen runtime/live"
                      " runtime/pack_format/file"
                      " runtime/recording runtime/replay runtime/report",
     "runtime/ctl/commands": "platform platform/base runtime/control runtime/odometry runtime/pack_format/file"

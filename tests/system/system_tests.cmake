@@ -22,6 +22,9 @@ if(TARGET zonepack AND TARGET zoned)
   add_test(NAME system/recording
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/recording_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
+  add_test(NAME system/learn
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/learn_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
   add_test(NAME system/replay
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/replay_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})

@@ -211,5 +211,76 @@ TEST_F(Keeper, HoldsTheLimitUnderRandomWishes) {
   EXPECT_GT(memory->counters().zones_unloaded, 20u);
 }
 
+// Likely zones: of 4 slots each two fit; along the way 1, 2, 3 the sooner is worth more.
+class LikelyZones : public Keeper {
+ protected:
+  void keep(std::vector<ZoneId> wanted, std::size_t useful, bool sure) {
+    now += kSecond;
+    loader->advance_to(now);
+    std::vector<LoadResult> loads;
+    while (const auto load = loader->poll()) loads.push_back(*load);
+    keeper->collect(now, loads);
+    keeper->keep(now, {wanted, useful, useful, useful, true, &foresight, sure});
+  }
+  void hold(ZoneId zone) {
+    step({zone});
+    step({zone});
+    taken();
+  }
+  Foresight foresight;
+};
+
+TEST_F(LikelyZones, TakeTheRoomOfWhatIsWorthLess) {
+  hold(5);
+  hold(0);
+  foresight.follow(std::vector<ZoneId>{1, 2, 3}, kNoZone, 0, nullptr);
+  keep({0, 1, 2, 3}, 1, true);
+  EXPECT_EQ(taken(), (Log{"evicted 5", "load_started 1"}));  // nobody comes to 5
+  keep({0, 1, 2, 3}, 1, true);
+  keep({0, 1, 2, 3}, 1, true);
+  EXPECT_EQ(taken(), Log{"load_done 1"});  // 1 comes before 2
+  EXPECT_FALSE(keeper->blocked());
+}
+
+TEST_F(LikelyZones, AreGivenUpWhenTheyDoNotCome) {
+  hold(0);
+  foresight.follow(std::vector<ZoneId>{1}, kNoZone, 0, nullptr);
+  keep({0, 1}, 1, false);
+  EXPECT_EQ(taken(), Log{"load_started 1"});
+  keeper->keep(now, {std::vector<ZoneId>{0}, 1, 1, 1, true, &foresight, false});
+  EXPECT_EQ(taken(), Log{"load_cancelled 1"});
+}
+
+TEST_F(LikelyZones, GiveWayToWhatIsNeededUnlessTheyAreTheWayAhead) {
+  hold(0);
+  foresight.follow(std::vector<ZoneId>{1}, kNoZone, 0, nullptr);
+  keep({0, 1}, 1, false);
+  EXPECT_EQ(taken(), Log{"load_started 1"});
+  keeper->keep(now, {std::vector<ZoneId>{0, 2, 1}, 2, 2, 2, true, &foresight, false});
+  EXPECT_EQ(taken(), Log{"load_cancelled 1"});
+  make(8, {});
+  hold(0);
+  keep({0, 1}, 1, true);
+  keeper->keep(now, {std::vector<ZoneId>{0, 2, 1}, 2, 2, 2, true, &foresight, true});
+  EXPECT_EQ(taken(), Log{"load_started 1"});
+}
+
+TEST_F(LikelyZones, ProtectNothingFromWhatIsNeeded) {
+  hold(1);
+  hold(0);
+  foresight.follow(std::vector<ZoneId>{1}, kNoZone, 0, nullptr);
+  keep({0, 2, 1}, 2, true);
+  EXPECT_EQ(taken(), (Log{"evicted 1", "load_started 2"}));
+}
+
+TEST_F(LikelyZones, EvictNothingWhileFrozen) {
+  hold(5);
+  hold(0);
+  memory->freeze(true);
+  foresight.follow(std::vector<ZoneId>{1}, kNoZone, 0, nullptr);
+  keep({0, 1}, 1, true);
+  EXPECT_EQ(taken(), Log{});
+}
+
 }  // namespace
 }  // namespace zonepack

@@ -47,6 +47,17 @@ TEST_F(CommandLines, AreReadAsTheyWereWritten) {
   EXPECT_EQ(fixes->size(), 1u);
 }
 
+TEST_F(CommandLines, HoldTheZonesOfARoute) {
+  const auto hints =
+      read("# command 1 route_hint Hall 2/Hall 2 / Hall 2\r\n# command 2 route_hint\n");
+  ASSERT_TRUE(hints) << hints.error().message;
+  ASSERT_EQ(hints->size(), 2u);
+  EXPECT_EQ((*hints)[0].command.kind, Command::Kind::kRouteHint);
+  EXPECT_EQ((*hints)[0].command.route_length, 3u);
+  EXPECT_EQ((*hints)[0].command.route[2], 7u);
+  EXPECT_EQ((*hints)[1].command.route_length, 0u);
+}
+
 TEST_F(CommandLines, NameTheLineThatIsWrong) {
   const auto message = [&](const std::string& text) {
     const auto read_back = read("# fixes\n" + text + "\n");
@@ -56,6 +67,10 @@ TEST_F(CommandLines, NameTheLineThatIsWrong) {
             std::string::npos);
   EXPECT_NE(message("# command 1 stop").find("\"stop\" is not a command"), std::string::npos);
   EXPECT_NE(message("# command 1 seek Attic").find("the map has no zone Attic"), std::string::npos);
+  EXPECT_NE(message("# command 1 route_hint Hall 2/Attic").find("the map has no zone Attic"),
+            std::string::npos);
+  EXPECT_NE(message("# command 1 route_hint Hall 2/").find("the map has no zone "),
+            std::string::npos);
   EXPECT_NE(message("# command 1 lost Hall 2").find("lost takes no zone"), std::string::npos);
 }
 
