@@ -38,22 +38,32 @@ Renumbering::Renumbering(const HeldSignatures& held, const MapOutline& outline) 
 }
 
 void Renumbering::find_known(const HeldSignatures& held, const MapOutline& outline) {
+  std::size_t others = 0;
   for (const NodeOutline& node : outline.nodes) {
     const HeldSignatures::Signature* const same = held.find(node.id);
-    if (same != nullptr && same->stamp == node.stamp) known_[node.id] = node.id;
+    if (same == nullptr || (same->stamp == 0 && node.stamp == 0)) continue;
+    if (same->stamp == node.stamp) {
+      known_[node.id] = node.id;
+    } else {
+      ++others;
+    }
   }
-  grown_ = !known_.empty();
+  const std::size_t compared = known_.size() + others;
+  grown_ = known_.size() > others;
   if (grown_) return;
-  std::map<std::pair<double, Transform>, std::int32_t> by_moment;
+  known_.clear();
+  std::map<SignatureIdentity, std::int32_t> by_identity;
   for (const auto& [id, signature] : held.by_id()) {
-    if (signature.odometry_pose) by_moment[{signature.stamp, *signature.odometry_pose}] = id;
+    if (signature.identity) by_identity[*signature.identity] = id;
   }
   for (const NodeOutline& node : outline.nodes) {
-    if (!node.odometry_pose) continue;
-    const auto found = by_moment.find({node.stamp, *node.odometry_pose});
-    if (found == by_moment.end() || !known_.try_emplace(found->second, node.id).second) continue;
+    const auto identity = identity_of(node.stamp, node.label, node.odometry_pose, node.pose);
+    if (!identity) continue;
+    const auto found = by_identity.find(*identity);
+    if (found == by_identity.end() || !known_.try_emplace(found->second, node.id).second) continue;
     if (found->second != node.id) ids_[node.id] = found->second;
   }
+  grown_ = compared == 0 && !known_.empty();
 }
 
 // All ids that change move by one offset, which a later update finds again, so that links to
