@@ -79,18 +79,17 @@ void Renumbering::number_ids(const HeldSignatures& held, const MapOutline& outli
       if (!grown_) referred.insert(to);
     }
   }
-  std::int64_t offset = last;
-  for (const auto& [of_map, of_database] : known_) {
-    if (of_map != of_database) offset = std::int64_t{of_map} - of_database;
-  }
   for (const NodeOutline& node : outline.nodes) last = std::max(last, node.id);
+  std::int64_t offset = last;  // so that what it gives is free
+  for (const auto& [of_map, of_database] : known_) {
+    if (!grown_ && of_map != of_database) offset = std::int64_t{of_map} - of_database;
+  }
   const auto taken = [&](std::int32_t id) {
     if (held.find(id) != nullptr) return true;
+    if (known_.empty()) return referred.contains(id);
+    // Moved by an earlier update, when the map held the id: links lead to where it went.
     const std::int64_t moved = id + offset;
-    const bool moved_before =
-        known_.empty() ||
-        (moved <= kMostNumber && referred.contains(static_cast<std::int32_t>(moved)));
-    return referred.contains(id) && moved_before;
+    return moved <= kMostNumber && referred.contains(static_cast<std::int32_t>(moved));
   };
   std::vector<std::int32_t> others;
   for (const NodeOutline& node : outline.nodes) {

@@ -58,11 +58,11 @@ TEST(Renumbering, LeavesADatabaseThatWasGrownOnAsItIs) {
 }
 
 TEST(Renumbering, MovesAllIdsThatClashByOneOffset) {
-  // The map's last id is 4, so 2 becomes 6 and 4 becomes 8; 9 is free and stays.
+  // The last id of both is 9, so 2 becomes 11 and 4 becomes 13; 9 is free and stays.
   const HeldSignatures map({{2, held(node(2, 0, 100))}, {4, held(node(4, 0, 100))}});
   const Renumbering numbers(map, outline({node(2, 0, 900), node(4, 0, 900), node(9, 0, 900)}));
   EXPECT_FALSE(numbers.grown());
-  EXPECT_THAT(numbers.ids(), ElementsAre(Pair(2, 6), Pair(4, 8)));
+  EXPECT_THAT(numbers.ids(), ElementsAre(Pair(2, 11), Pair(4, 13)));
   EXPECT_THAT(numbers.sessions(), ElementsAre(Pair(0, 1))) << "the map has another session 0";
 }
 
@@ -78,6 +78,14 @@ TEST(Renumbering, FindsAgainWhatAnEarlierUpdateRenumbered) {
   EXPECT_THAT(numbers.ids(), ElementsAre(Pair(2, 6), Pair(4, 8)));
   EXPECT_THAT(numbers.sessions(), ElementsAre(Pair(0, 1)));
   EXPECT_EQ(numbers.in_database(6), 2);
+}
+
+TEST(Renumbering, MovesTheEndsOfLinksAgainWhenTheIdsThatClashedAreGone) {
+  // As above, but the map no longer holds 2; a link from 8 to where 2 went, 6, is still there.
+  NodeOutline other = node(4, 0, 900);
+  const HeldSignatures map({{4, held(node(4, 0, 100))}, {8, held(other, {6})}});
+  const Renumbering numbers(map, outline({node(2, 0, 900), other}));
+  EXPECT_THAT(numbers.ids(), ElementsAre(Pair(2, 6), Pair(4, 8)));
 }
 
 TEST(Renumbering, IsNotFooledByAFewEqualStamps) {
@@ -106,8 +114,8 @@ TEST(Renumbering, KnowsFilesOfTilesByTheirNamesWhateverTheirNumbers) {
   EXPECT_TRUE(numbers.grown());
   EXPECT_FALSE(numbers.shares(folder.nodes[1]));
   // c.pcd keeps the id that the map gave it; b.pcd, whose number is taken, gets one that neither
-  // the map nor the folder has.
-  EXPECT_THAT(numbers.ids(), ElementsAre(Pair(2, 4), Pair(3, 2)));
+  // the map nor the folder has: 2 and their last id, 3.
+  EXPECT_THAT(numbers.ids(), ElementsAre(Pair(2, 5), Pair(3, 2)));
 }
 
 TEST(Renumbering, KnowsTilesWithoutNamesByTheirPlace) {
@@ -121,7 +129,7 @@ TEST(Renumbering, KnowsTilesWithoutNamesByTheirPlace) {
   const MapOutline cloud = outline({tile(1, 5), tile(2, 10), tile(3, 20)});
   const Renumbering numbers(map, cloud);
   EXPECT_EQ(numbers.shared(), 2u);
-  EXPECT_THAT(numbers.ids(), ElementsAre(Pair(1, 4), Pair(2, 1), Pair(3, 2)));
+  EXPECT_THAT(numbers.ids(), ElementsAre(Pair(1, 4), Pair(2, 1), Pair(3, 2)));  // 1 + 3
 }
 
 TEST(Renumbering, KeepsOffIdsThatLinksOfTheMapReferTo) {
