@@ -166,7 +166,7 @@ TEST(Renumbering, RenumbersRecordsWithTheirLinks) {
   EXPECT_EQ(record.map_id, 1);
   std::vector<std::int32_t> ends;
   for (const Link& link : record.links) ends.push_back(link.to);
-  EXPECT_THAT(ends, testing::UnorderedElementsAre(4, -7, 3));
+  EXPECT_THAT(ends, testing::UnorderedElementsAre(5, -7, 3));  // 2 and the last id of both, 3
 }
 
 }  // namespace
