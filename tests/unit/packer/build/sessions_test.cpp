@@ -13,7 +13,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Pair;
 
-std::string refusal(const std::string& text) {
+std::string layer_refusal(const std::string& text) {
   try {
     parse_layer(text);
   } catch (const std::invalid_argument& error) {
@@ -23,7 +23,7 @@ std::string refusal(const std::string& text) {
 }
 
 template <typename Do>
-std::string thrown_by(Do what) {
+std::string text_thrown_by(Do what) {
   try {
     what();
   } catch (const std::runtime_error& error) {
@@ -46,15 +46,15 @@ TEST(Layers, JoinRangesThatTouchOrOverlap) {
 }
 
 TEST(Layers, AreRefusedWithWhatWasExpected) {
-  EXPECT_THAT(refusal("rooms"), HasSubstr("has no '='"));
-  EXPECT_THAT(refusal("rooms="), HasSubstr("has '' where a session's number belongs"));
-  EXPECT_THAT(refusal("rooms=1,,2"), HasSubstr("has '' where"));
-  EXPECT_THAT(refusal("rooms=-1"), HasSubstr("where a session's number belongs"));
-  EXPECT_THAT(refusal("rooms=2147483648"), HasSubstr("has '2147483648' where"));
-  EXPECT_THAT(refusal("rooms=3-1"), HasSubstr("ends before it begins"));
-  EXPECT_THAT(refusal("a,b=1"), HasSubstr("has a comma in its name"));
-  EXPECT_THAT(refusal("=1"), HasSubstr("unfit name"));
-  EXPECT_THAT(refusal("x=1x"), HasSubstr("such as skeleton=0 or rooms=1-3,5"));
+  EXPECT_THAT(layer_refusal("rooms"), HasSubstr("has no '='"));
+  EXPECT_THAT(layer_refusal("rooms="), HasSubstr("has '' where a session's number belongs"));
+  EXPECT_THAT(layer_refusal("rooms=1,,2"), HasSubstr("has '' where"));
+  EXPECT_THAT(layer_refusal("rooms=-1"), HasSubstr("where a session's number belongs"));
+  EXPECT_THAT(layer_refusal("rooms=2147483648"), HasSubstr("has '2147483648' where"));
+  EXPECT_THAT(layer_refusal("rooms=3-1"), HasSubstr("ends before it begins"));
+  EXPECT_THAT(layer_refusal("a,b=1"), HasSubstr("has a comma in its name"));
+  EXPECT_THAT(layer_refusal("=1"), HasSubstr("unfit name"));
+  EXPECT_THAT(layer_refusal("x=1x"), HasSubstr("such as skeleton=0 or rooms=1-3,5"));
 }
 
 TEST(Layers, OfOneNameReplaceTheMapsAndOthersAreAddedByName) {
@@ -67,10 +67,10 @@ TEST(Layers, OfOneNameReplaceTheMapsAndOthersAreAddedByName) {
 }
 
 TEST(Layers, ShareNoSession) {
-  EXPECT_THAT(
-      thrown_by([] { merged_layers({parse_layer("skeleton=0-4")}, {parse_layer("rooms=4-6")}); }),
-      HasSubstr("session 4 is in layer 'rooms' and in layer 'skeleton'"));
-  EXPECT_THAT(thrown_by([] {
+  EXPECT_THAT(text_thrown_by(
+                  [] { merged_layers({parse_layer("skeleton=0-4")}, {parse_layer("rooms=4-6")}); }),
+              HasSubstr("session 4 is in layer 'rooms' and in layer 'skeleton'"));
+  EXPECT_THAT(text_thrown_by([] {
                 merged_layers({}, {parse_layer("a=1"), parse_layer("a=2")});
               }),
               HasSubstr("layer 'a' is given twice"));
@@ -106,18 +106,18 @@ TEST(SessionChoice, IsRefusedWhereItNamesWhatIsNotThere) {
   const std::vector<NamedLayer> layers = {parse_layer("rooms=1")};
   SessionChoice choice;
   choice.dropped = {4};
-  EXPECT_THAT(thrown_by([&] {
+  EXPECT_THAT(text_thrown_by([&] {
                 require_known(choice, layers, {{0, 5}, {1, 2}}, "map.db");
               }),
               HasSubstr("map.db: has no session 4, which --drop-session names; it has 0, 1"));
   choice = {};
   choice.layers = {"roms"};
-  EXPECT_THAT(thrown_by([&] {
+  EXPECT_THAT(text_thrown_by([&] {
                 require_known(choice, layers, {{1, 2}}, "map.db");
               }),
               HasSubstr("'roms', which no --layer names"));
   choice.layers = {"rooms"};
-  EXPECT_EQ(thrown_by([&] { require_known(choice, layers, {{1, 2}}, "map.db"); }), "");
+  EXPECT_EQ(text_thrown_by([&] { require_known(choice, layers, {{1, 2}}, "map.db"); }), "");
 }
 
 }  // namespace

@@ -6,10 +6,10 @@
 namespace zonepack::packer {
 namespace {
 
-fb::Node node(std::int32_t id) { return {0, 0, 0, 0, id}; }
+fb::Node node_of(std::int32_t id) { return {0, 0, 0, 0, id}; }
 
 TEST(ZoneEdges, CountLinksBetweenZonesEitherWay) {
-  ZoneEdges edges({{node(1), node(2)}, {node(3)}, {node(4)}});
+  ZoneEdges edges({{node_of(1), node_of(2)}, {node_of(3)}, {node_of(4)}});
   EXPECT_FALSE(edges.add(1, 2)) << "within a zone";
   EXPECT_FALSE(edges.add(1, 9)) << "to a signature that no zone holds";
   EXPECT_FALSE(edges.add(-5, 1)) << "from a landmark";

@@ -153,9 +153,9 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 // A version that an update made: zones that it named are as of change 1.
-VersionChange change(std::vector<std::string> added, std::vector<std::string> changed,
-                     std::vector<std::string> drawn, std::vector<std::string> replaced,
-                     std::uint32_t zones_before = 2) {
+VersionChange version_change(std::vector<std::string> added, std::vector<std::string> changed,
+                             std::vector<std::string> drawn, std::vector<std::string> replaced,
+                             std::uint32_t zones_before = 2) {
   VersionChange out;
   out.what = "add";
   out.zones = zones_before;
@@ -183,12 +183,12 @@ void give_signature_2_to_a(SmallMap& m) {
 TEST(UpdatedManifests, MayHaveDrawnAZoneAroundASignatureOfOneThatStays) {
   SmallMap added;
   give_signature_1_to_b(added);
-  added.content.changes = {change({"b"}, {}, {}, {}, 1)};
+  added.content.changes = {version_change({"b"}, {}, {}, {}, 1)};
   added.write_manifest();
   EXPECT_TRUE(verify_map(added.folder).whole()) << listed(verify_map(added.folder).problems);
   SmallMap redrawn;
   give_signature_1_to_b(redrawn);
-  redrawn.content.changes = {change({}, {"b"}, {"b"}, {"b"})};
+  redrawn.content.changes = {version_change({}, {"b"}, {"b"}, {"b"})};
   redrawn.write_manifest();
   EXPECT_TRUE(verify_map(redrawn.folder).whole()) << listed(verify_map(redrawn.folder).problems);
 }
@@ -199,43 +199,46 @@ INSTANTIATE_TEST_SUITE_P(
         Lie{"SignatureOfANewZoneThatStandsInAnOldOne",
             [](SmallMap& m) {
               give_signature_2_to_a(m);
-              m.content.changes = {change({"b"}, {}, {}, {}, 1)};
+              m.content.changes = {version_change({"b"}, {}, {}, {}, 1)};
             },
             "signature 2 is in the pack of zone b, by the polygons it belongs to zone a"},
         Lie{"SignatureOfAChangedZoneThatWasNotDrawn",
             [](SmallMap& m) {
               give_signature_1_to_b(m);
-              m.content.changes = {change({}, {"b"}, {}, {})};
+              m.content.changes = {version_change({}, {"b"}, {}, {})};
             },
             "signature 1 is in the pack of zone a, by the polygons it belongs to zone b"},
         Lie{"SignatureThatCameAfterTheOtherZoneWasDrawn",
             [](SmallMap& m) {
               give_signature_1_to_b(m);
-              m.content.changes = {change({}, {"b"}, {"b"}, {"b"}), change({}, {"a"}, {}, {"a"})};
+              m.content.changes = {version_change({}, {"b"}, {"b"}, {"b"}),
+                                   version_change({}, {"a"}, {}, {"a"})};
             },
             "signature 1 is in the pack of zone a, by the polygons it belongs to zone b"},
         Lie{"AddedZoneThatIsNotThere",
-            [](SmallMap& m) { m.content.changes = {change({"c"}, {}, {}, {}, 1)}; },
+            [](SmallMap& m) { m.content.changes = {version_change({"c"}, {}, {}, {}, 1)}; },
             "says in change number 1 that zone c was added, and then has none of that name"},
         Lie{"RemovedZoneThatIsThere",
             [](SmallMap& m) {
-              m.content.changes = {change({}, {}, {}, {}, 2)};
+              m.content.changes = {version_change({}, {}, {}, {}, 2)};
               m.content.changes[0].removed = {"a"};
             },
             "that zone a was removed, and then has one of that name"},
-        Lie{"ZonesBefore", [](SmallMap& m) { m.content.changes = {change({"b"}, {}, {}, {}, 2)}; },
+        Lie{"ZonesBefore",
+            [](SmallMap& m) { m.content.changes = {version_change({"b"}, {}, {}, {}, 2)}; },
             "says in change number 1 there were 2 zones before it, by its lists 1"},
         Lie{"AddedAndChanged",
-            [](SmallMap& m) { m.content.changes = {change({"b"}, {"b"}, {}, {}, 1)}; },
+            [](SmallMap& m) { m.content.changes = {version_change({"b"}, {"b"}, {}, {}, 1)}; },
             "that zone b was there before, and was added"},
         Lie{"OutOfOrder",
             [](SmallMap& m) {
-              m.content.changes = {change({}, {"b", "a"}, {}, {})};
+              m.content.changes = {version_change({}, {"b", "a"}, {}, {})};
             },
             "that zones were changed out of order or twice"},
         Lie{"AddedTwice",
             [](SmallMap& m) {
-              m.content.changes = {change({"b"}, {}, {}, {}, 1), change({"b"}, {}, {}, {}, 1)};
+              m.content.changes = {version_change({"b"}, {}, {}, {}, 1),
+                                   version_change({"b"}, {}, {}, {}, 1)};
             },
             "says in change number 1 that zone b was added, and then has none of that name"}),
     [](const auto& test) { return test.param.name; });

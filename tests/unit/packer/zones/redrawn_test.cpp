@@ -16,20 +16,20 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::string box(const std::string& name, double left, double right) {
+std::string room_text(const std::string& name, double left, double right) {
   const std::string l = std::to_string(left), r = std::to_string(right);
   return R"({"type":"Feature","properties":{"name":")" + name +
          R"(","zone_type":"room"},"geometry":{"type":"Polygon","coordinates":[[[)" + l + ",0],[" +
          r + ",0],[" + r + ",4],[" + l + ",4],[" + l + ",0]]]}}";
 }
 
-std::string portal(const std::string& a, const std::string& b, double x) {
+std::string door_text(const std::string& a, const std::string& b, double x) {
   const std::string at = std::to_string(x);
   return R"({"type":"Feature","properties":{"portal":true,"zones":[")" + a + R"(",")" + b +
          R"("]},"geometry":{"type":"LineString","coordinates":[[)" + at + ",1],[" + at + ",2]]}}";
 }
 
-std::string drawing(const std::vector<std::string>& features) {
+std::string drawing_of(const std::vector<std::string>& features) {
   std::string text = R"({"type":"FeatureCollection","features":[)";
   for (std::size_t i = 0; i < features.size(); ++i) text += (i > 0 ? "," : "") + features[i];
   return text + "]}";
@@ -39,14 +39,15 @@ std::string drawing(const std::vector<std::string>& features) {
 class RedrawnZones : public testing::Test {
  protected:
   RedrawnZones() {
-    held_ = parse_zone_file(drawing({box("a", 0, 4), box("b", 4, 8), box("c", 8, 12),
-                                     portal("a", "b", 4), portal("b", "c", 8)}),
-                            kDefaultSnap_m)
+    held_ = parse_zone_file(
+                drawing_of({room_text("a", 0, 4), room_text("b", 4, 8), room_text("c", 8, 12),
+                            door_text("a", "b", 4), door_text("b", "c", 8)}),
+                kDefaultSnap_m)
                 .plan;
   }
 
   std::string file(const std::vector<std::string>& features) {
-    std::ofstream(disk_ / "new.geojson") << drawing(features);
+    std::ofstream(disk_ / "new.geojson") << drawing_of(features);
     return (disk_ / "new.geojson").string();
   }
 
@@ -79,10 +80,11 @@ class RedrawnZones : public testing::Test {
 
 TEST_F(RedrawnZones, TakeTheNamedZoneWithItsPortalsAndLeaveTheRest) {
   // c grows to 14, its door moves; the file's d and its a are others' business.
-  const Redrawn out = redraw(held_,
-                             file({box("a", 0, 3.5), box("c", 8, 14), box("d", 14, 18),
-                                   portal("b", "c", 8), portal("c", "d", 14)}),
-                             kDefaultSnap_m, {"c"});
+  const Redrawn out =
+      redraw(held_,
+             file({room_text("a", 0, 3.5), room_text("c", 8, 14), room_text("d", 14, 18),
+                   door_text("b", "c", 8), door_text("c", "d", 14)}),
+             kDefaultSnap_m, {"c"});
   EXPECT_THAT(names(out.plan), ElementsAre("a", "b", "c"));
   EXPECT_THAT(out.fresh, ElementsAre("c"));
   EXPECT_THAT(out.not_taken, ElementsAre("d"));
@@ -92,19 +94,22 @@ TEST_F(RedrawnZones, TakeTheNamedZoneWithItsPortalsAndLeaveTheRest) {
 }
 
 TEST_F(RedrawnZones, LoseThePortalsThatTheFileNoLongerDraws) {
-  const Redrawn out = redraw(held_, file({box("c", 8, 12), box("a", 0, 4), portal("a", "b", 4)}),
-                             kDefaultSnap_m, {"c"});
+  const Redrawn out =
+      redraw(held_, file({room_text("c", 8, 12), room_text("a", 0, 4), door_text("a", "b", 4)}),
+             kDefaultSnap_m, {"c"});
   EXPECT_THAT(portals(out.plan), ElementsAre("a-b"));
   ASSERT_EQ(out.warnings.size(), 1u);
   EXPECT_THAT(out.warnings[0], HasSubstr("zone 'c' is unreachable"));
 }
 
 TEST_F(RedrawnZones, AreRefusedWhenTheFileLacksOneOrOverlapsWhatStays) {
-  EXPECT_THAT(thrown_by([&] { redraw(held_, file({box("a", 0, 4)}), kDefaultSnap_m, {"c"}); }),
-              HasSubstr("draws no zone 'c', which --replace names"));
+  EXPECT_THAT(
+      thrown_by([&] { redraw(held_, file({room_text("a", 0, 4)}), kDefaultSnap_m, {"c"}); }),
+      HasSubstr("draws no zone 'c', which --replace names"));
   // 7.5 to 8 is b's.
-  EXPECT_THAT(thrown_by([&] { redraw(held_, file({box("c", 7.5, 12)}), kDefaultSnap_m, {"c"}); }),
-              HasSubstr("overlap"));
+  EXPECT_THAT(
+      thrown_by([&] { redraw(held_, file({room_text("c", 7.5, 12)}), kDefaultSnap_m, {"c"}); }),
+      HasSubstr("overlap"));
 }
 
 TEST_F(RedrawnZones, TakeAllPartsOfOneThatWasSplit) {
@@ -112,7 +117,7 @@ TEST_F(RedrawnZones, TakeAllPartsOfOneThatWasSplit) {
   held_.zones[2].name = "b.2";
   held_.zones[1].parent = held_.zones[2].parent = "b";
   const Redrawn out =
-      redraw(held_, file({box("b", 4, 12), portal("a", "b", 4)}), kDefaultSnap_m, {"b"});
+      redraw(held_, file({room_text("b", 4, 12), door_text("a", "b", 4)}), kDefaultSnap_m, {"b"});
   EXPECT_THAT(names(out.plan), ElementsAre("a", "b"));
   EXPECT_EQ(out.plan.zones[1].parent, "");
   EXPECT_THAT(portals(out.plan), ElementsAre("a-b"));
@@ -120,16 +125,17 @@ TEST_F(RedrawnZones, TakeAllPartsOfOneThatWasSplit) {
 
 TEST_F(RedrawnZones, AddThoseThatTheMapLacks) {
   const Redrawn out = add_zones(
-      held_, file({box("a", 0, 4), box("d", 12, 16), portal("c", "d", 12)}), kDefaultSnap_m);
+      held_, file({room_text("a", 0, 4), room_text("d", 12, 16), door_text("c", "d", 12)}),
+      kDefaultSnap_m);
   EXPECT_THAT(names(out.plan), ElementsAre("a", "b", "c", "d"));
   EXPECT_THAT(out.fresh, ElementsAre("d"));
   EXPECT_THAT(portals(out.plan), ElementsAre("a-b", "b-c", "c-d"));
 }
 
 TEST_F(RedrawnZones, AddToTheMapOnlyWhereItsOwnZonesAreDrawnAlike) {
-  EXPECT_THAT(thrown_by([&] { add_zones(held_, file({box("a", 0, 3.9)}), kDefaultSnap_m); }),
+  EXPECT_THAT(thrown_by([&] { add_zones(held_, file({room_text("a", 0, 3.9)}), kDefaultSnap_m); }),
               HasSubstr("zone 'a' is drawn otherwise than in the map"));
-  EXPECT_THAT(thrown_by([&] { add_zones(held_, file({box("d", 11, 16)}), kDefaultSnap_m); }),
+  EXPECT_THAT(thrown_by([&] { add_zones(held_, file({room_text("d", 11, 16)}), kDefaultSnap_m); }),
               HasSubstr("overlap"));
   // The same ring from another vertex is drawn alike.
   const std::string turned =
@@ -143,7 +149,7 @@ TEST_F(RedrawnZones, LeadAPortalToThePartOfASplitZoneThatItTouches) {
   held_.zones[2].name = "b.2";
   held_.zones[1].parent = held_.zones[2].parent = "b";
   const Redrawn out =
-      add_zones(held_, file({box("d", 12, 16), portal("b", "d", 12)}), kDefaultSnap_m);
+      add_zones(held_, file({room_text("d", 12, 16), door_text("b", "d", 12)}), kDefaultSnap_m);
   EXPECT_THAT(portals(out.plan), testing::Contains("b.2-d"));
 }
 
