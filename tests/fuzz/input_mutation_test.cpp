@@ -65,11 +65,11 @@ TEST(InputMutations, OfDatabasesEndInOrder) {
 }
 
 TEST(InputMutations, OfMessagePackMapsEndInOrder) {
-  mutate(input_seeds().msgpack, "msgpack", read_msgpack, 20'000, 16 * kMiB);
+  mutate(input_seeds().msgpack, "msgpack", read_msgpack, 5'000, 16 * kMiB);
 }
 
 TEST(InputMutations, OfPointCloudsEndInOrder) {
-  mutate(input_seeds().pcd, "pcd", read_pcd, 4'000, 24 * kMiB);
+  mutate(input_seeds().pcd, "pcd", read_pcd, 2'000, 24 * kMiB);
 }
 
 TEST(InputMutations, OfRecordingsEndInOrder) {
