@@ -21,8 +21,6 @@
 namespace zonepack::packer {
 namespace {
 
-// A kind whose signatures are cut when it is opened, and have no names of their own.
-constexpr const char* kCutAnew = "pcd";
 constexpr double kApart_m = 0.3;  // between two positions of one signature that are worth a word
 
 class MapUpdate {
@@ -96,7 +94,10 @@ void MapUpdate::require_kind() const {
                              ", and the map " + options_.map.string() + " was packed from kind " +
                              held + "; update it from one of that kind, or build another map");
   }
-  if (kind != kCutAnew || !options_.add || zones_->has_fresh()) return;
+  const MapOutline& outline = database_->outline();
+  const bool named = std::ranges::any_of(
+      outline.nodes, [](const NodeOutline& node) { return !node.label.empty(); });
+  if (!outline.numbered_anew || named || !options_.add || zones_->has_fresh()) return;
   throw std::runtime_error(
       options_.source.name() + ": is cut into tiles anew, so nothing says which of them the map " +
       options_.map.string() +

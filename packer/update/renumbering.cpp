@@ -38,20 +38,8 @@ Renumbering::Renumbering(const HeldSignatures& held, const MapOutline& outline) 
 }
 
 void Renumbering::find_known(const HeldSignatures& held, const MapOutline& outline) {
-  std::size_t others = 0;
-  for (const NodeOutline& node : outline.nodes) {
-    const HeldSignatures::Signature* const same = held.find(node.id);
-    if (same == nullptr || (same->stamp == 0 && node.stamp == 0)) continue;
-    if (same->stamp == node.stamp) {
-      known_[node.id] = node.id;
-    } else {
-      ++others;
-    }
-  }
-  const std::size_t compared = known_.size() + others;
-  grown_ = known_.size() > others;
+  if (!outline.numbered_anew) find_known_by_id(held, outline);
   if (grown_) return;
-  known_.clear();
   std::map<SignatureIdentity, std::int32_t> by_identity;
   for (const auto& [id, signature] : held.by_id()) {
     if (signature.identity) by_identity[*signature.identity] = id;
@@ -63,7 +51,22 @@ void Renumbering::find_known(const HeldSignatures& held, const MapOutline& outli
     if (found == by_identity.end() || !known_.try_emplace(found->second, node.id).second) continue;
     if (found->second != node.id) ids_[node.id] = found->second;
   }
-  grown_ = compared == 0 && !known_.empty();
+  grown_ = outline.numbered_anew && !known_.empty();
+}
+
+void Renumbering::find_known_by_id(const HeldSignatures& held, const MapOutline& outline) {
+  std::size_t others = 0;
+  for (const NodeOutline& node : outline.nodes) {
+    const HeldSignatures::Signature* const same = held.find(node.id);
+    if (same == nullptr) continue;
+    if (same->stamp == node.stamp) {
+      known_[node.id] = node.id;
+    } else {
+      ++others;
+    }
+  }
+  grown_ = known_.size() > others;
+  if (!grown_) known_.clear();
 }
 
 // All ids that change move by one offset, which a later update finds again, so that links to

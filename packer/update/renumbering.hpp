@@ -42,6 +42,7 @@ class Renumbering {
   void apply(SignatureRecord& record) const;
 
  private:
+  void find_known_by_id(const HeldSignatures& held, const MapOutline& outline);
   void find_known(const HeldSignatures& held, const MapOutline& outline);
   void number_ids(const HeldSignatures& held, const MapOutline& outline);
   void number_sessions(const HeldSignatures& held, const MapOutline& outline);

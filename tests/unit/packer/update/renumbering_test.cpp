@@ -109,7 +109,8 @@ TEST(Renumbering, KnowsFilesOfTilesByTheirNamesWhateverTheirNumbers) {
     return out;
   };
   const HeldSignatures map({{1, held_as(tile(1, "a.pcd"))}, {2, held_as(tile(2, "c.pcd"))}});
-  const MapOutline folder = outline_of({tile(1, "a.pcd"), tile(2, "b.pcd"), tile(3, "c.pcd")});
+  MapOutline folder = outline_of({tile(1, "a.pcd"), tile(2, "b.pcd"), tile(3, "c.pcd")});
+  folder.numbered_anew = true;
   const Renumbering numbers(map, folder);
   EXPECT_TRUE(numbers.grown());
   EXPECT_FALSE(numbers.shares(folder.nodes[1]));
@@ -126,7 +127,8 @@ TEST(Renumbering, KnowsTilesWithoutNamesByTheirPlace) {
     return out;
   };
   const HeldSignatures map({{1, held_as(tile(1, 10))}, {2, held_as(tile(2, 20))}});
-  const MapOutline cloud = outline_of({tile(1, 5), tile(2, 10), tile(3, 20)});
+  MapOutline cloud = outline_of({tile(1, 5), tile(2, 10), tile(3, 20)});
+  cloud.numbered_anew = true;
   const Renumbering numbers(map, cloud);
   EXPECT_EQ(numbers.shared(), 2u);
   EXPECT_THAT(numbers.ids(), ElementsAre(Pair(1, 4), Pair(2, 1), Pair(3, 2)));  // 1 + 3
