@@ -17,6 +17,7 @@
 #include "packer/commands/suggest_zones.hpp"
 #include "packer/commands/update.hpp"
 #include "packer/commands/verify.hpp"
+#include "packer/record/source_kind.hpp"
 #include "platform/command_line/command_line.hpp"
 #include "platform/signals.hpp"
 #include "platform/version/version.hpp"
@@ -60,6 +61,9 @@ int main(int argc, char** argv) {
     zonepack::parse_command_line(app, argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  } catch (const zonepack::packer::SourceUsageError& error) {
+    std::cerr << "zonepack: " << error.what() << "\n";
+    return 2;
   } catch (const std::exception& error) {
     std::cerr << "zonepack: " << error.what() << "\n";
     return 1;

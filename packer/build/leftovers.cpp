@@ -61,11 +61,19 @@ bool is_part_of_map(std::string_view name) {
   return whole == kManifestName || whole.ends_with(".zpk");
 }
 
-void refuse_while_written(const std::filesystem::path& folder, std::string_view name) {
-  const std::string_view digits = name.substr(name.rfind(kPartMark) + kPartMark.size());
+// The process that writes a part, or wrote it; 0 when the name does not say.
+int writer_of(std::string_view part) {
+  const std::string_view digits = part.substr(part.rfind(kPartMark) + kPartMark.size());
   int process = 0;
   std::from_chars(digits.data(), digits.data() + digits.size(), process);
-  if (process <= 0 || (::kill(process, 0) != 0 && errno == ESRCH)) return;
+  return std::max(process, 0);
+}
+
+bool runs(int process) { return ::kill(process, 0) == 0 || errno != ESRCH; }
+
+void refuse_while_written(const std::filesystem::path& folder, std::string_view name) {
+  const int process = writer_of(name);
+  if (process == 0 || !runs(process)) return;
   throw std::runtime_error((folder / name).string() + " is being written by process " +
                            std::to_string(process) +
                            ", which still runs; wait for the build to end, or stop it");
@@ -86,6 +94,19 @@ std::vector<Leftover> find_leftovers(const std::filesystem::path& folder) {
   }
   std::ranges::sort(leftovers, {}, &Leftover::name);
   return leftovers;
+}
+
+void remove_parts_of_killed(const std::filesystem::path& folder) noexcept {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.is_symlink(ignored) || !entry.is_regular_file(ignored) || !is_part_of_map(name)) {
+      continue;
+    }
+    if (const int process = writer_of(name); process != 0 && !runs(process)) {
+      std::filesystem::remove(entry.path(), ignored);
+    }
+  }
 }
 
 void remove_leftover(const std::filesystem::path& folder, const Leftover& leftover) {

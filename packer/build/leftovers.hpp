@@ -21,6 +21,9 @@ struct Leftover {
 // damaged, since all packs would be lost then, and while the process that writes a part still runs.
 std::vector<Leftover> find_leftovers(const std::filesystem::path& folder);
 
+// Removes parts of packs and manifests whose writer is gone. What cannot be removed stays.
+void remove_parts_of_killed(const std::filesystem::path& folder) noexcept;
+
 // Throws std::runtime_error when the file cannot be removed.
 void remove_leftover(const std::filesystem::path& folder, const Leftover& leftover);
 

@@ -117,8 +117,10 @@ flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<fb::Change>>> change
     const Names added = names(builder, change.added);
     const Names removed = names(builder, change.removed);
     const Names changed = names(builder, change.changed);
+    const Names drawn = names(builder, change.drawn);
+    const Names replaced = names(builder, change.replaced);
     tables.push_back(fb::CreateChange(builder, parent, what, change.zones, change.signatures,
-                                      change.pack_bytes, added, removed, changed));
+                                      change.pack_bytes, added, removed, changed, drawn, replaced));
   }
   return builder.CreateVector(tables);
 }

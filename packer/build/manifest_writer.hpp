@@ -25,7 +25,9 @@ struct VersionChange {
   std::uint32_t zones = 0;  // of the version before, like the next two
   std::uint64_t signatures = 0;
   std::uint64_t pack_bytes = 0;
-  std::vector<std::string> added, removed, changed;  // zones, sorted
+  // Zones, sorted. Drawn: with another outline, besides those added. Replaced: of which no signature
+  // of the version before was kept.
+  std::vector<std::string> added, removed, changed, drawn, replaced;
 };
 
 struct ManifestContent {

@@ -15,6 +15,7 @@
 #include "packer/build/placing.hpp"
 #include "packer/build/provenance.hpp"
 #include "packer/build/repeated_features.hpp"
+#include "packer/build/zone_edges.hpp"
 #include "packer/build/zone_jobs.hpp"
 #include "packer/encode/packable.hpp"
 #include "packer/sources/open_source.hpp"
@@ -53,7 +54,6 @@ class MapBuilder {
   void name_layers();
   void finish(MapFolder& folder);
   ByteCount charged(std::size_t zone) const;
-  std::vector<fb::ZoneEdge> edges() const;
   Digest16 lineage() const;
 
   const BuildOptions& options_;
@@ -249,25 +249,6 @@ void MapBuilder::split(MapFolder& folder) {
   }
 }
 
-std::vector<fb::ZoneEdge> MapBuilder::edges() const {
-  std::map<std::int32_t, std::uint32_t> zone_by_id;
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    if (zone_of_[i] != Partition::kNone) zone_by_id[places_[i].id] = zone_of_[i];
-  }
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> counts;
-  for (std::uint32_t zone = 0; zone < links_.size(); ++zone) {
-    for (const auto& [from, to] : links_[zone]) {
-      const auto other = zone_by_id.find(to);
-      if (other == zone_by_id.end() || other->second == zone) continue;
-      ++counts[std::minmax(zone, other->second)];
-    }
-  }
-  std::vector<fb::ZoneEdge> edges;
-  edges.reserve(counts.size());
-  for (const auto& [pair, links] : counts) edges.emplace_back(pair.first, pair.second, links);
-  return edges;
-}
-
 // Every version of a map begins with the same first signature, so it names the lineage.
 Digest16 MapBuilder::lineage() const {
   const NodeOutline& first = source_->outline().nodes.front();
@@ -308,7 +289,11 @@ void MapBuilder::finish(MapFolder& folder) {
       if (!skipped_.contains(places_[member].id)) nodes.push_back(nodes_[member]);
     }
   }
-  content.edges = edges();
+  ZoneEdges edges(content.nodes);
+  for (const auto& zone : links_) {
+    for (const auto& [from, to] : zone) edges.add(from, to);
+  }
+  content.edges = edges.list();
   content.lineage = lineage();
   content.payload = options_.payload;
   content.source_kind = source_->outline().kind;

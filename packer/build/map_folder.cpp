@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "packer/build/leftovers.hpp"
 #include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
 #include "platform/storage.hpp"
@@ -20,6 +21,7 @@ MapFolder::MapFolder(std::filesystem::path path) : path_(std::move(path)) {
                              (error ? error.message() : "a file of that name exists") +
                              "; give another --out");
   }
+  remove_parts_of_killed(path_);
   for (const auto& entry : std::filesystem::directory_iterator(path_)) {
     before_.insert(entry.path().filename().string());
   }

@@ -16,7 +16,8 @@ namespace zonepack::packer {
 // Threads: keep() by any; the rest by one.
 class MapFolder {
  public:
-  // Creates the folder if needed. Throws std::runtime_error when that fails.
+  // Creates the folder if needed, and clears it of half-written files that a killed writer left.
+  // Throws std::runtime_error when that fails.
   explicit MapFolder(std::filesystem::path path);
   ~MapFolder();
 

@@ -40,6 +40,7 @@ struct MapOutline {
   std::string kind = "rtabmap";       // what wrote it, as --from names it
   std::string schema_version;         // "0.23.8"
   std::vector<NodeOutline> nodes;     // ascending id, without deleted ones
+  bool numbered_anew = false;         // ids are of this opening only: what is new may shift them
   std::vector<Damage> damages;        // nodes whose own row or optimised pose is damaged
   std::vector<std::string> warnings;  // for the user, complete sentences
   std::vector<std::string> notes;     // how the source was read, where there was a choice

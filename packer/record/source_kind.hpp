@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -23,6 +24,21 @@ struct FramePlacement {
   // x, y, z in metres, then roll, pitch, yaw in degrees, of a camera that at zero looks along the
   // base's x axis. None: at the base, turned as the trajectory shows or looking along x.
   std::optional<std::array<double, 6>> camera_in_base;
+
+  // The option that gave the first of these; empty: none is given.
+  std::string first_option() const {
+    return !trajectory.empty() ? "--align"
+           : metres_per_unit   ? "--scale"
+           : up                ? "--up"
+           : camera_in_base    ? "--camera-in-base"
+                               : "";
+  }
+};
+
+// Options that do not fit the source: a wrong command line, as only the source can show.
+class SourceUsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 // How a source is opened. All commands share these options.
@@ -49,6 +65,7 @@ struct SourceKind {
   // is of no kind.
   bool (*recognises)(const std::filesystem::path& path);
   std::unique_ptr<MapSource> (*open)(const SourceOptions& options);
+  bool takes_placement = false;  // its maps have a frame of their own (FramePlacement)
 };
 
 }  // namespace zonepack::packer

@@ -12,8 +12,13 @@ namespace zonepack::packer {
 // file is tried.
 std::span<const SourceKind* const> source_kinds() noexcept;
 
+// What a source is: options.kind, or what its content shows; nullptr: none of these. Throws
+// std::runtime_error when there is no kind of that name.
+const SourceKind* recognised_kind(const SourceOptions& options);
+
 // Opens a source as what its content shows it to be, or as options.kind. Throws std::runtime_error
-// with what the file is and what to do when it is none that can be packed.
+// with what the file is and what to do when it is none that can be packed, SourceUsageError when
+// options place a map that has its frame already.
 std::unique_ptr<MapSource> open_source(const SourceOptions& options);
 
 }  // namespace zonepack::packer

@@ -87,6 +87,8 @@ std::vector<VersionChange> changes_of(const fb::Manifest& manifest) {
     out.added = names_in(change->added());
     out.removed = names_in(change->removed());
     out.changed = names_in(change->changed());
+    out.drawn = names_in(change->drawn());
+    out.replaced = names_in(change->replaced());
   }
   return changes;
 }

@@ -34,6 +34,8 @@ void refuse_unlinked(const MapOutline& outline, const std::string& database) {
 
 }  // namespace
 
+bool aligns(const std::string& kind) { return kind == kRtabmap; }
+
 Newcomers::Newcomers(const MapSource& database, const HeldSignatures& held, const ZonePlan& plan,
                      const UpdateOptions& options, const std::vector<NamedLayer>& layers,
                      UnlinkedPolicy unlinked)
@@ -42,8 +44,8 @@ Newcomers::Newcomers(const MapSource& database, const HeldSignatures& held, cons
   const std::string name = options.source.name();
   require_signatures(outline, name);
   if (unlinked == UnlinkedPolicy::kError) refuse_unlinked(outline, name);
-  // Maps of keyframes come aligned (Placement).
-  if (!options.source.placement.trajectory.empty() && outline.kind == kRtabmap) {
+  // Maps of keyframes come placed.
+  if (!options.source.placement.trajectory.empty() && aligns(outline.kind)) {
     align_with(options.source.placement.trajectory, outline, name);
     // Odometry has a frame of its own, which the trajectory says nothing about.
     unlinked = UnlinkedPolicy::kDrop;

@@ -16,6 +16,9 @@
 // The signatures of a database that an update may take into a map.
 namespace zonepack::packer {
 
+// Whether signatures of such a source are aligned with a trajectory when they come into a map.
+bool aligns(const std::string& kind);
+
 struct Newcomer {
   const NodeOutline* node = nullptr;
   std::int32_t id = 0, session = 0;  // in the map

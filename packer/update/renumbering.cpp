@@ -38,22 +38,35 @@ Renumbering::Renumbering(const HeldSignatures& held, const MapOutline& outline) 
 }
 
 void Renumbering::find_known(const HeldSignatures& held, const MapOutline& outline) {
-  for (const NodeOutline& node : outline.nodes) {
-    const HeldSignatures::Signature* const same = held.find(node.id);
-    if (same != nullptr && same->stamp == node.stamp) known_[node.id] = node.id;
-  }
-  grown_ = !known_.empty();
+  if (!outline.numbered_anew) find_known_by_id(held, outline);
   if (grown_) return;
-  std::map<std::pair<double, Transform>, std::int32_t> by_moment;
+  std::map<SignatureIdentity, std::int32_t> by_identity;
   for (const auto& [id, signature] : held.by_id()) {
-    if (signature.odometry_pose) by_moment[{signature.stamp, *signature.odometry_pose}] = id;
+    if (signature.identity) by_identity[*signature.identity] = id;
   }
   for (const NodeOutline& node : outline.nodes) {
-    if (!node.odometry_pose) continue;
-    const auto found = by_moment.find({node.stamp, *node.odometry_pose});
-    if (found == by_moment.end() || !known_.try_emplace(found->second, node.id).second) continue;
+    const auto identity = identity_of(node.stamp, node.label, node.odometry_pose, node.pose);
+    if (!identity) continue;
+    const auto found = by_identity.find(*identity);
+    if (found == by_identity.end() || !known_.try_emplace(found->second, node.id).second) continue;
     if (found->second != node.id) ids_[node.id] = found->second;
   }
+  grown_ = outline.numbered_anew && !known_.empty();
+}
+
+void Renumbering::find_known_by_id(const HeldSignatures& held, const MapOutline& outline) {
+  std::size_t others = 0;
+  for (const NodeOutline& node : outline.nodes) {
+    const HeldSignatures::Signature* const same = held.find(node.id);
+    if (same == nullptr) continue;
+    if (same->stamp == node.stamp) {
+      known_[node.id] = node.id;
+    } else {
+      ++others;
+    }
+  }
+  grown_ = known_.size() > others;
+  if (!grown_) known_.clear();
 }
 
 // All ids that change move by one offset, which a later update finds again, so that links to
@@ -69,18 +82,17 @@ void Renumbering::number_ids(const HeldSignatures& held, const MapOutline& outli
       if (!grown_) referred.insert(to);
     }
   }
-  std::int64_t offset = last;
-  for (const auto& [of_map, of_database] : known_) {
-    if (of_map != of_database) offset = std::int64_t{of_map} - of_database;
-  }
   for (const NodeOutline& node : outline.nodes) last = std::max(last, node.id);
+  std::int64_t offset = last;  // so that what it gives is free
+  for (const auto& [of_map, of_database] : known_) {
+    if (!grown_ && of_map != of_database) offset = std::int64_t{of_map} - of_database;
+  }
   const auto taken = [&](std::int32_t id) {
     if (held.find(id) != nullptr) return true;
+    if (known_.empty()) return referred.contains(id);
+    // Moved by an earlier update, when the map held the id: links lead to where it went.
     const std::int64_t moved = id + offset;
-    const bool moved_before =
-        known_.empty() ||
-        (moved <= kMostNumber && referred.contains(static_cast<std::int32_t>(moved)));
-    return referred.contains(id) && moved_before;
+    return moved <= kMostNumber && referred.contains(static_cast<std::int32_t>(moved));
   };
   std::vector<std::int32_t> others;
   for (const NodeOutline& node : outline.nodes) {

@@ -13,12 +13,13 @@ namespace zonepack::packer {
 
 // The numbers that signatures and sessions of a database get in a map that holds others already.
 //
-// A signature with the id and the stamp of one in the map is that one; so is, in a database that
-// has none of these, one with the stamp and the odometry of one in the map, which an earlier update
-// gave another id. Any other whose id the map holds, or refers to without knowing the database,
-// gets a free id; a session whose number the map holds, of which the two have no signature in
-// common, the next free number. Landmarks keep their ids: a tag on a wall is the same for every
-// session.
+// A signature with the id and the stamp of one in the map is that one, unless most ids that both
+// have are of other stamps. Where nothing is known so, a signature is known by its identity, which
+// holds where ids change: in a database of which an earlier update gave signatures other ids, and
+// in clouds, whose tiles are numbered anew. Any other whose id the map holds, or refers to without
+// knowing the database, gets a free id; a session whose number the map holds, of which the two have
+// no signature in common, the next free number. Landmarks keep their ids: a tag on a wall is the
+// same for every session.
 class Renumbering {
  public:
   Renumbering(const HeldSignatures& held, const MapOutline& outline);
@@ -41,6 +42,7 @@ class Renumbering {
   void apply(SignatureRecord& record) const;
 
  private:
+  void find_known_by_id(const HeldSignatures& held, const MapOutline& outline);
   void find_known(const HeldSignatures& held, const MapOutline& outline);
   void number_ids(const HeldSignatures& held, const MapOutline& outline);
   void number_sessions(const HeldSignatures& held, const MapOutline& outline);

@@ -64,6 +64,13 @@ void check_edges(const fb::Manifest& manifest, const Packs& packs,
   }
 }
 
+template <typename Do>
+void for_each_name(const flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>* list,
+                   Do with) {
+  if (list == nullptr) return;
+  for (const flatbuffers::String* name : *list) with(name->str());
+}
+
 double snap_of(const fb::Manifest& manifest) {
   const std::string options = flatbuffers::GetString(manifest.provenance()->options());
   const std::size_t at = options.find("snap=");
@@ -96,24 +103,26 @@ void check_portals(const fb::Manifest& manifest, Contradictions& contradictions)
   }
 }
 
-// Zones that an update added or drew anew. Other packs stay as they are then, with signatures that
-// stand in such a zone by now.
-std::set<std::string> zones_of_updates(const fb::Manifest& manifest) {
-  std::set<std::string> names;
-  if (manifest.changes() == nullptr) return names;
+// The number of the change that gave a zone its outline, and of the one that gave it all of its
+// signatures or the first of them; 0: the build.
+struct ZoneAge {
+  std::uint32_t drawn = 0, filled = 0;
+};
+
+std::map<std::string, ZoneAge> ages_of(const fb::Manifest& manifest) {
+  std::map<std::string, ZoneAge> ages;
+  if (manifest.changes() == nullptr) return ages;
+  std::uint32_t number = 0;
   for (const fb::Change* change : *manifest.changes()) {
-    for (const auto* list : {change->added(), change->changed()}) {
-      if (list == nullptr) continue;
-      for (const flatbuffers::String* name : *list) names.insert(name->str());
-    }
+    ++number;
+    for_each_name(change->added(), [&](const std::string& zone) { ages[zone] = {number, number}; });
+    for_each_name(change->drawn(), [&](const std::string& zone) { ages[zone] = {number, number}; });
+    for_each_name(change->replaced(), [&](const std::string& zone) { ages[zone].filled = number; });
   }
-  return names;
+  return ages;
 }
 
-// Checks the zone-in rule among the zones as they were before they were split; parts of one zone
-// share its signatures by a rule of their own.
-void check_places(const fb::Manifest& manifest, const Packs& packs,
-                  Contradictions& contradictions) {
+std::vector<PlannedZone> zones_of(const fb::Manifest& manifest) {
   std::vector<PlannedZone> zones;
   for (const fb::Zone* zone : *manifest.zones()) {
     PlannedZone& planned = zones.emplace_back();
@@ -123,32 +132,125 @@ void check_places(const fb::Manifest& manifest, const Packs& packs,
     planned.z_max_m = zone->z_max();
     planned.polygon = polygon_of(*zone);
   }
+  return zones;
+}
+
+struct Held {
+  SignaturePlace place;
+  std::uint32_t zone = 0;
+};
+
+// Those that the zone-in rule gives to another zone than the one which holds them, with that one.
+// The rule holds among zones as they were before they were split; parts of one zone share its
+// signatures by a rule of their own. `places` are of zones among `zones`.
+std::vector<std::pair<const Held*, std::uint32_t>> misplaced(
+    const std::vector<PlannedZone>& zones, const std::vector<const Held*>& signatures,
+    const std::vector<std::uint32_t>& place_of_zone) {
   std::vector<SignaturePlace> places;
-  std::vector<std::uint32_t> holder;
+  for (const Held* held : signatures) places.push_back(held->place);
+  const Partition partition = packer::partition(zones, places, OrphanPolicy::kNearest);
+  std::set<SignatureId> orphans;
+  for (const Orphan& orphan : partition.orphans) orphans.insert(orphan.id);
+  std::vector<std::pair<const Held*, std::uint32_t>> out;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::uint32_t here = place_of_zone[signatures[i]->zone], rule = partition.zone_of[i];
+    if (rule == here) continue;
+    const std::string& parent = zones[here].parent;
+    if (!parent.empty() && (zones[rule].parent == parent || orphans.contains(places[i].id))) {
+      continue;
+    }
+    out.emplace_back(signatures[i], rule);
+  }
+  return out;
+}
+
+// A zone that an update drew takes nothing from zones whose packs stay as they are, so signatures
+// of these may stand in it by now. But among the zones that were drawn before the holder of a
+// signature got the first of those it has, the rule must give the holder: leaving out zones that
+// were drawn later, which at its time were others or none, takes the signature from no other zone.
+//
+// Not known: whether a signature came into its zone after another was drawn around it, as only
+// zones are dated.
+void check_places(const fb::Manifest& manifest, const Packs& packs,
+                  Contradictions& contradictions) {
+  const std::vector<PlannedZone> zones = zones_of(manifest);
+  if (zones.empty()) return;
+  std::vector<Held> all;
   for (std::uint32_t zone = 0; zone < packs.size(); ++zone) {
     if (!packs[zone]) continue;
     for (const PackFacts::Node& node : packs[zone]->nodes) {
       const Transform& T = node.T_map_base;
-      places.push_back({node.id, {T[3], T[7]}, T[11]});
-      holder.push_back(zone);
+      all.push_back({{node.id, {T[3], T[7]}, T[11]}, zone});
     }
   }
-  if (zones.empty()) return;
-  const Partition partition = packer::partition(zones, places, OrphanPolicy::kNearest);
-  std::set<SignatureId> orphans;
-  for (const Orphan& orphan : partition.orphans) orphans.insert(orphan.id);
-  const std::set<std::string> updated = zones_of_updates(manifest);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const PlannedZone& by_rule = zones[partition.zone_of[i]];
-    const PlannedZone& held = zones[holder[i]];
-    if (partition.zone_of[i] == holder[i]) continue;
-    if (!held.parent.empty() && (by_rule.parent == held.parent || orphans.contains(places[i].id))) {
-      continue;
+  std::vector<const Held*> signatures;
+  for (const Held& held : all) signatures.push_back(&held);
+  std::vector<std::uint32_t> same(zones.size());
+  for (std::uint32_t zone = 0; zone < same.size(); ++zone) same[zone] = zone;
+  const auto report = [&](const Held& held, const std::string& rule) {
+    contradictions.push_back("signature " + std::to_string(held.place.id) +
+                             " is in the pack of zone " + zones[held.zone].name +
+                             ", by the polygons it belongs to zone " + rule);
+  };
+  std::map<std::string, ZoneAge> ages = ages_of(manifest);
+  std::map<std::uint32_t, std::vector<const Held*>> by_filling;
+  for (const auto& [held, rule] : misplaced(zones, signatures, same)) {
+    const std::uint32_t filled = ages[zones[held->zone].name].filled;
+    if (ages[zones[rule].name].drawn <= filled) {
+      report(*held, zones[rule].name);
+    } else {
+      by_filling[filled].push_back(held);
     }
-    if (updated.contains(by_rule.name) || updated.contains(held.name)) continue;
-    contradictions.push_back("signature " + std::to_string(places[i].id) +
-                             " is in the pack of zone " + held.name +
-                             ", by the polygons it belongs to zone " + by_rule.name);
+  }
+  for (const auto& [filled, later] : by_filling) {
+    std::vector<PlannedZone> then;
+    std::vector<std::uint32_t> place(zones.size());
+    for (std::uint32_t zone = 0; zone < zones.size(); ++zone) {
+      place[zone] = static_cast<std::uint32_t>(then.size());
+      if (ages[zones[zone].name].drawn <= filled) then.push_back(zones[zone]);
+    }
+    for (const auto& [held, rule] : misplaced(then, later, place)) report(*held, then[rule].name);
+  }
+}
+
+// The history leads from the zones that are there back to those of the first version.
+//
+// Not known: what the versions before had in signatures and bytes, as their packs may be gone.
+void check_history(const fb::Manifest& manifest, Contradictions& contradictions) {
+  if (manifest.changes() == nullptr) return;
+  std::set<std::string> zones;
+  for (const fb::Zone* zone : *manifest.zones()) zones.insert(zone->name()->str());
+  for (std::uint32_t i = manifest.changes()->size(); i-- > 0;) {
+    const fb::Change& change = *manifest.changes()->Get(i);
+    const auto say = [&](const std::string& text) {
+      contradictions.push_back("says in change number " + std::to_string(i + 1) + " " + text);
+    };
+    const auto check = [&](const auto* list, const char* word, bool there) {
+      std::string last;
+      for_each_name(list, [&](const std::string& zone) {
+        if (zone <= last) say("that zones were " + std::string(word) + " out of order or twice");
+        last = zone;
+        if (zones.contains(zone) == there) return;
+        say("that zone " + zone + " was " + word +
+            (there ? ", and then has none" : ", and then has one") + " of that name");
+      });
+    };
+    check(change.added(), "added", true);
+    check(change.changed(), "changed", true);
+    check(change.drawn(), "drawn", true);
+    check(change.replaced(), "replaced", true);
+    check(change.removed(), "removed", false);
+    for_each_name(change.added(), [&](const std::string& zone) { zones.erase(zone); });
+    for (const auto* list : {change.changed(), change.drawn(), change.replaced()}) {
+      for_each_name(list, [&](const std::string& zone) {
+        if (!zones.contains(zone)) say("that zone " + zone + " was there before, and was added");
+      });
+    }
+    for_each_name(change.removed(), [&](const std::string& zone) { zones.insert(zone); });
+    if (zones.size() != change.zones()) {
+      say("there were " + std::to_string(change.zones()) + " zones before it, by its lists " +
+          std::to_string(zones.size()));
+    }
   }
 }
 
@@ -183,6 +285,7 @@ Contradictions map_contradictions(const fb::Manifest& manifest, const Packs& pac
   if (complete) check_edges(manifest, packs, zone_of, contradictions);
   check_portals(manifest, contradictions);
   check_places(manifest, packs, contradictions);
+  check_history(manifest, contradictions);
   check_provenance(manifest, packs, contradictions);
   return contradictions;
 }

@@ -6,11 +6,16 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "packer/encode/packable.hpp"
+#include "packer/sources/cloud/cloud_source.hpp"
+#include "packer/sources/cloud/tiled_cloud.hpp"
 #include "packer/sources/rtabmap/rtabmap_database.hpp"
+#include "packer/sources/stella/stella_msgpack.hpp"
+#include "packer/sources/stella/stella_source.hpp"
 #include "packer/zones/zone_file.hpp"
 #include "runtime/protocol/messages.hpp"
 #include "runtime/recording/block.hpp"
@@ -68,6 +73,32 @@ std::uint64_t read_request(const wire::Request& request) {
   return read.sum() + request.id() + request.map_serial();
 }
 
+// Opens the bytes as a map, and reads every signature. Whatever is wrong is said about the file, or
+// about one signature.
+template <typename Open>
+bool read_source(ByteSpan bytes, const char* name, Open open) {
+  const std::string path = as_file({bytes.begin(), bytes.end()}, name);
+  bool whole = true;
+  try {
+    const std::unique_ptr<packer::MapSource> source = open(path);
+    packer::SignatureRecord record;
+    whole = source->outline().damages.empty();
+    for (const packer::NodeOutline& node : source->outline().nodes) {
+      try {
+        source->read(node.id, packer::PayloadSet(), record);
+        whole = whole && !packer::find_unpackable(record);
+      } catch (const packer::DamagedSignature& error) {
+        if (error.damage().signature != node.id) std::abort();
+        whole = false;
+      }
+    }
+  } catch (const std::runtime_error& error) {
+    if (!std::string_view(error.what()).starts_with(path)) std::abort();
+    return false;
+  }
+  return whole;
+}
+
 }  // namespace
 
 bool read_geojson(ByteSpan bytes) {
@@ -88,26 +119,23 @@ bool read_settings(ByteSpan bytes) {
 }
 
 bool read_sqlite(ByteSpan bytes) {
-  const std::string path = as_file({bytes.begin(), bytes.end()}, "map.db");
-  bool whole = true;
-  try {
-    packer::RtabmapDatabase database(path);
-    packer::SignatureRecord record;
-    whole = database.outline().damages.empty();
-    for (const packer::NodeOutline& node : database.outline().nodes) {
-      try {
-        database.read(node.id, packer::PayloadSet(), record);
-        whole = whole && !packer::find_unpackable(record);
-      } catch (const packer::DamagedSignature& error) {
-        if (error.damage().signature != node.id) std::abort();
-        whole = false;
-      }
-    }
-  } catch (const std::runtime_error& error) {
-    if (!std::string_view(error.what()).starts_with(path)) std::abort();
-    return false;
-  }
-  return whole;
+  return read_source(bytes, "map.db", [](const std::string& path) {
+    return std::make_unique<packer::RtabmapDatabase>(path);
+  });
+}
+
+bool read_msgpack(ByteSpan bytes) {
+  return read_source(bytes, "map.msg", [](const std::string& path) {
+    return std::make_unique<packer::StellaSource>(packer::open_stella_msgpack(path),
+                                                  packer::SourceOptions(path));
+  });
+}
+
+bool read_pcd(ByteSpan bytes) {
+  return read_source(bytes, "cloud.pcd", [](const std::string& path) {
+    return std::make_unique<packer::CloudSource>(
+        "pcd", packer::open_tiled_cloud(packer::SourceOptions(path)), path);
+  });
 }
 
 bool read_recording(ByteSpan bytes) {

@@ -13,6 +13,10 @@ bool read_geojson(ByteSpan bytes);
 bool read_settings(ByteSpan bytes);
 // A database, from its first byte to its last. Accepted when every signature can be packed.
 bool read_sqlite(ByteSpan bytes);
+// A map of stella_vslam as MessagePack. Accepted when every keyframe can be packed.
+bool read_msgpack(ByteSpan bytes);
+// A point cloud (PCD), cut into tiles. Accepted when every tile can be packed.
+bool read_pcd(ByteSpan bytes);
 // Blocks of a recording, sealed with right checksums: for each its kind (1 byte), the size of its
 // content (uint32), the content.
 bool read_recording(ByteSpan bytes);

@@ -64,6 +64,14 @@ TEST(InputMutations, OfDatabasesEndInOrder) {
   mutate(input_seeds().sqlite, "sqlite", read_sqlite, 4'000, 48 * kMiB);
 }
 
+TEST(InputMutations, OfMessagePackMapsEndInOrder) {
+  mutate(input_seeds().msgpack, "msgpack", read_msgpack, 5'000, 16 * kMiB);
+}
+
+TEST(InputMutations, OfPointCloudsEndInOrder) {
+  mutate(input_seeds().pcd, "pcd", read_pcd, 2'000, 24 * kMiB);
+}
+
 TEST(InputMutations, OfRecordingsEndInOrder) {
   mutate(input_seeds().recordings, "recording", read_recording, 3'000, 16 * kMiB);
 }
@@ -73,8 +81,8 @@ TEST(InputMutations, OfMessagesEndInOrder) {
 }
 
 TEST(InputMutations, OfNothingAreRefused) {
-  for (const Entry entry :
-       {read_geojson, read_settings, read_sqlite, read_recording, read_message}) {
+  for (const Entry entry : {read_geojson, read_settings, read_sqlite, read_msgpack, read_pcd,
+                            read_recording, read_message}) {
     EXPECT_FALSE(entry({}));
   }
 }

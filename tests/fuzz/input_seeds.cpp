@@ -2,9 +2,13 @@
 #include "tests/fuzz/input_seeds.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 
 #include "runtime/protocol/messages.hpp"
@@ -55,6 +59,101 @@ Bytes database() {
   }
   test_support::write_rtabmap_database(folder / "map.db", fixture);
   return contents(folder / "map.db");
+}
+
+// A map of two keyframes of stella_vslam, as of 2026 or of 2019.
+Bytes stella_map(bool of_2019) {
+  nlohmann::json keyframes, landmarks;
+  for (int id : {1, 2}) {
+    nlohmann::json one = {{"ts", 0.5 + id},
+                          {"cam", "front"},
+                          {"rot_cw", {0.0, 0.0, 0.0, 1.0}},
+                          {"trans_cw", {0.25 * id, 0.0, 1.0 * id}},
+                          {"n_keypts", 2},
+                          {"x_rights", nlohmann::json::array()},
+                          {"depths", nlohmann::json::array()},
+                          {"span_parent", id == 1 ? 4294967295U : 1U},
+                          {"span_children", nlohmann::json::array()},
+                          {"loop_edges", {3 - id}},
+                          {"lm_ids", {7, -1}}};
+    nlohmann::json points = nlohmann::json::array(), bare = points, words = points;
+    for (int k : {0, 1}) {
+      points.push_back({{"pt", {10.5 + k, 20.25}}, {"ang", 90.0 * k}, {"oct", k}});
+      bare.push_back({10.5 + k, 20.25});
+      nlohmann::json descriptor;
+      for (unsigned word = 0; word < 8; ++word) descriptor.push_back(0x01020304U * word);
+      words.push_back(descriptor);
+    }
+    one["descs"] = words;
+    if (of_2019) {
+      one["keypts"] = points;
+      one["undists"] = bare;
+      one["scale_factor"] = 1.2;
+    } else {
+      one["undist_keypts"] = points;
+      one["orb_params"] = "orb";
+    }
+    keyframes[std::to_string(id)] = one;
+  }
+  landmarks["7"] = {{"pos_w", {0.5, 0.25, 3.0}}, {"ref_keyfrm", 1}};
+  nlohmann::json map = {{"cameras",
+                         {{"front",
+                           {{"setup_type", "RGBD"},
+                            {"model_type", "Perspective"},
+                            {"cols", 640},
+                            {"rows", 480},
+                            {"fx", 500.0},
+                            {"fy", 500.0},
+                            {"cx", 320.0},
+                            {"cy", 240.0},
+                            {"k1", 0.125}}}}},
+                        {"keyframes", keyframes},
+                        {"landmarks", landmarks}};
+  if (!of_2019) map["orb_params"] = {{"orb", {{"scale_factor", 1.2}, {"num_levels", 8}}}};
+  const std::vector<std::uint8_t> packed = nlohmann::json::to_msgpack(map);
+  return bytes_of({reinterpret_cast<const char*>(packed.data()), packed.size()});
+}
+
+void add_u32(std::string& out, std::uint32_t value) {
+  for (int shift = 0; shift < 32; shift += 8) out += static_cast<char>(value >> shift & 255U);
+}
+
+constexpr std::uint32_t kPoints = 40;
+
+std::uint32_t word_of(float value) { return std::bit_cast<std::uint32_t>(value); }
+
+std::string pcd_header(const char* data) {
+  return "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z intensity rgb\nSIZE 4 4 4 4 4\nTYPE F F F F U\n"
+         "COUNT 1 1 1 1 1\nWIDTH 40\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 40\nDATA " +
+         std::string(data) + "\n";
+}
+
+// Points along a wall, over three tiles of 10 m.
+std::vector<Bytes> clouds() {
+  std::string text = pcd_header("ascii"), rows = pcd_header("binary");
+  std::array<std::string, 5> columns;
+  for (std::uint32_t i = 0; i < kPoints; ++i) {
+    const std::array<std::uint32_t, 5> point = {word_of(0.5F * static_cast<float>(i)), word_of(-2),
+                                                word_of(0.25F), word_of(80), 0x102030};
+    for (std::size_t k = 0; k < point.size(); ++k) {
+      add_u32(rows, point[k]);
+      add_u32(columns[k], point[k]);
+    }
+    text += std::to_string(i / 2) + (i % 2 == 0 ? ".0" : ".5") + " -2 0.25 80 1056816\n";
+  }
+  // LZF: literal runs of 32 bytes for the first column; of every other one its first word, and
+  // matches of 4 bytes back for the 156 behind it (length: 7 in the first byte, then 156 - 9).
+  std::string packed;
+  for (std::size_t at = 0; at < columns[0].size(); at += 32)
+    packed += '\x1F' + columns[0].substr(at, 32);
+  for (std::size_t k = 1; k < columns.size(); ++k) {
+    packed += '\x03' + columns[k].substr(0, 4);
+    packed += {'\xE0', static_cast<char>(columns[k].size() - 4 - 9), '\x03'};
+  }
+  std::string compressed = pcd_header("binary_compressed");
+  add_u32(compressed, static_cast<std::uint32_t>(packed.size()));
+  add_u32(compressed, kPoints * 20);
+  return {bytes_of(text), bytes_of(rows), bytes_of(compressed + packed)};
 }
 
 void add_block(Bytes& out, BlockKind kind, ByteSpan content) {
@@ -126,6 +225,8 @@ InputSeeds make_input_seeds() {
   seeds.geojson = {bytes_of(kRooms)};
   seeds.settings = {contents(ZONEPACK_SOURCE_DIR "/config/agilex.yaml")};
   seeds.sqlite = {database()};
+  seeds.msgpack = {stella_map(false), stella_map(true)};
+  seeds.pcd = clouds();
   seeds.recordings = {recording()};
   add_messages(seeds.messages);
   return seeds;

@@ -10,7 +10,7 @@ namespace zonepack::fuzz {
 
 // Inputs that the entries of input_entries.hpp accept.
 struct InputSeeds {
-  std::vector<packer::Bytes> geojson, settings, sqlite, recordings, messages;
+  std::vector<packer::Bytes> geojson, settings, sqlite, msgpack, pcd, recordings, messages;
 };
 
 const InputSeeds& input_seeds();

@@ -30,6 +30,8 @@ int main(int argc, char** argv) {
   write("geojson", inputs.geojson);
   write("settings", inputs.settings);
   write("sqlite", inputs.sqlite);
+  write("msgpack", inputs.msgpack);
+  write("pcd", inputs.pcd);
   write("recording", inputs.recordings);
   write("protocol", inputs.messages);
   return 0;

@@ -111,7 +111,7 @@ ARROWS = {
     "packer/commands": "packer/build packer/console packer/decode packer/export packer/inspect packer/outline"
                        " packer/preview packer/record packer/sources packer/suggest packer/update packer/verify packer/zones"
                        " platform platform/base platform/command_line runtime/pack_format runtime/pack_format/file runtime/report",
-    "packer": "platform/command_line platform/signals.hpp packer/commands platform/version runtime/pack_format/file",
+    "packer": "platform/command_line platform/signals.hpp packer/commands packer/record/source_kind.hpp platform/version runtime/pack_format/file",
 }
 
 GPIOD = r"gpiod\.h"

@@ -61,10 +61,23 @@ if(TARGET zonepack)
   add_test(NAME system/clouds
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/cloud_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
-  set_tests_properties(system/stella system/clouds PROPERTIES TIMEOUT 600)
+  add_test(NAME system/update_kinds
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/update_kinds_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/stella system/clouds system/update_kinds PROPERTIES TIMEOUT 600)
+endif()
+
+if(TARGET zonepack)
+  add_test(NAME system/old_reader
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/old_reader_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
 endif()
 
 if(TARGET zonepack AND TARGET zoned)
+  add_test(NAME system/drive_kinds
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/drive_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/drive_kinds PROPERTIES TIMEOUT 600)
   add_test(NAME system/suggest_zones
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/suggest_zones_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})

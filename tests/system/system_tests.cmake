@@ -85,7 +85,10 @@ if(TARGET zonepack)
   add_test(NAME system/killed_build
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/killed_build_test.sh $<TARGET_FILE:zonepack>
                    ${PROJECT_SOURCE_DIR}/tests/data)
-  set_tests_properties(system/killed_build PROPERTIES TIMEOUT 900)
+  add_test(NAME system/killed_update
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/killed_update_test.sh $<TARGET_FILE:zonepack>
+                   ${PROJECT_SOURCE_DIR}/tests/data)
+  set_tests_properties(system/killed_build system/killed_update PROPERTIES TIMEOUT 900)
 endif()
 add_test(NAME system/read_by_hand
          COMMAND ${CMAKE_CURRENT_LIST_DIR}/read_by_hand_test.sh ${PROJECT_SOURCE_DIR})

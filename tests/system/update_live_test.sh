@@ -2,23 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # usage: update_live_test.sh BIN SOURCE: a robot takes an update of one zone while it drives: zones that did not change
 # stay resident and are not read again. Recorded and replayed, the events are the same byte for byte.
-set -euo pipefail
-bin=$1 data=$2/tests/data config=$2/config/agilex.yaml
-run=$data/scenario1_loop
-work=$(mktemp -d)
-trap 'kill %1 2>/dev/null && wait || true; rm -rf "$work"' EXIT
-cd "$work"
-export ZONED_SOCKET=$work/run/zoned.sock
-
-fail() { echo "$*" >&2; cat out.txt >&2 || true; exit 1; }
-until_status() {  # JQ-CONDITION
-  for _ in $(seq 600); do
-    "$bin/zonectl" status --json status.json >/dev/null 2>&1 && jq -e "$1" status.json >/dev/null && return 0
-    kill -0 $pid 2>/dev/null || fail "the run ended before $1"
-    sleep 0.05
-  done
-  fail "never $1: $(cat status.json)"
-}
+# shellcheck source-path=SCRIPTDIR
+. "$(dirname "$0")/live_map.sh"
 
 # A database of the same map in which the features of room R51 were found anew: their angles differ.
 cp "$data/hospital-small.db" grown.db
@@ -30,11 +15,7 @@ sqlite3 grown.db "update Feature set dir = dir + 1 where node_id in ($far)"
 cp -r map before
 most=$("$bin/zonepack" plan map --json - 2>/dev/null | jq '[.zones[].charged_bytes] | add * 2 + 4194304')
 
-privilege=()
-chrt -f 1 true 2>/dev/null || privilege=(--allow-degraded)
-"$bin/zoned" run --config "$config" --map map --can "log:$run/can0.log@1" --corrections "$run/corrections.txt" \
-  --budget "$most" --record run.zpr --events live.jsonl --json live.json "${privilege[@]}" >out.txt 2>&1 &
-pid=$!
+drive "$most"
 until_status ".map_ready and .zones_resident > 1"
 until_status ".zones_loading == 0 or (.zones_loading | not)"
 
@@ -47,8 +28,7 @@ for pack in before/*.zpk; do cmp "$pack" "map/$(basename "$pack")"; done
 kill -HUP $pid
 until_status ".map_changes == 1 and .map_ready"
 sleep 1
-kill -TERM $pid
-wait $pid || fail "exit code $?"
+arrive
 
 # What was resident and did not change is kept: neither evicted at the change nor loaded after it.
 jq -es '. as $all | (map(.event) | index("map_changed")) as $at
@@ -59,8 +39,4 @@ jq -es '. as $all | (map(.event) | index("map_changed")) as $at
   | ($kept | length) > 1 and ($kept | sort) == ($resident | map(select(. != "R51")) | sort)
     and ($loaded | map(select(. as $z | $kept | index($z))) | length) == 0' live.jsonl >/dev/null ||
   fail "kept and loaded zones: $(jq -c '[.event, .zone]' live.jsonl)"
-jq -e '.budget_violations == 0 and .lost_events == 0 and .allocations == 0' live.json >/dev/null || fail "$(cat live.json)"
-"$bin/zoned" replay --recording run.zpr --events again.jsonl --json again.json >out.txt 2>&1 || fail "replay"
-cmp live.jsonl again.jsonl || fail "the replay differs"
-jq -e '.budget_violations == 0' again.json >/dev/null || fail "$(cat again.json)"
 echo "an update of one zone leaves the others in memory"

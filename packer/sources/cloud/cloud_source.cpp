@@ -24,6 +24,7 @@ CloudSource::CloudSource(const char* kind, std::shared_ptr<const CloudMap> cloud
     : name_(std::move(name)), cloud_(std::move(cloud)) {
   auto outline = std::make_shared<MapOutline>();
   outline->kind = kind;
+  outline->numbered_anew = true;
   outline->schema_version = cloud_->version;
   outline->warnings = cloud_->warnings;
   outline->notes = cloud_->notes;

@@ -6,10 +6,12 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "packer/sources/cloud/lzf_stream.hpp"
@@ -115,6 +117,18 @@ class PcdStream : public PointStream {
   std::uint64_t read_ = 0;
 };
 
+// All of a text as a number, and whether it is one. What a float of this size cannot hold is
+// infinite when it is too large, and 0 when it is too small.
+template <typename T>
+std::pair<double, bool> read_number(const char* from, const char* end) {
+  T value = 0;
+  const auto [stop, error] = std::from_chars(from, end, value);
+  if (stop != end) return {0, false};
+  if (error != std::errc::result_out_of_range) return {value, error == std::errc()};
+  const double wide = std::strtod(std::string(from, end).c_str(), nullptr);
+  return {std::abs(wide) > 1 ? std::copysign(INFINITY, wide) : 0, true};
+}
+
 class AsciiStream : public PcdStream {
  public:
   using PcdStream::PcdStream;
@@ -162,23 +176,19 @@ class AsciiStream : public PcdStream {
     const auto which = std::ranges::find(carried_, &field);
     if (which == carried_.end() || !first) return;
     const auto index = static_cast<std::size_t>(which - carried_.begin());
-    double value = 0;
     const char* const from = *begin == '+' ? begin + 1 : begin;
     const bool single = field.type == 'F' && field.size == 4;
-    float narrow = 0;
-    const auto [stop, error] =
-        single ? std::from_chars(from, at, narrow) : std::from_chars(from, at, value);
-    const bool denormal = error == std::errc::result_out_of_range;
-    if (denormal) narrow = 0;
-    if (single) value = narrow;
-    if ((error != std::errc() && !denormal) || stop != at) {
+    const auto [value, whole] =
+        single ? read_number<float>(from, at) : read_number<double>(from, at);
+    if (!whole) {
       fail("expected a number as " + field.name + ", found '" +
            std::string(begin, std::min(at, begin + 40)) + "'");
     }
     if (index == kRgb) {
-      point.rgb = single ? std::bit_cast<std::uint32_t>(narrow)
+      const double whole_number = std::isnan(value) ? 0 : value;
+      point.rgb = single ? std::bit_cast<std::uint32_t>(static_cast<float>(value))
                          : static_cast<std::uint32_t>(static_cast<std::int64_t>(
-                               std::clamp(value, -2147483648.0, 4294967295.0)));
+                               std::clamp(whole_number, -2147483648.0, 4294967295.0)));
     } else {
       set(point, index, value);
     }

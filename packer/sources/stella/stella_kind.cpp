@@ -25,6 +25,7 @@ const SourceKind kStellaKind = {"stella", "a stella_vslam or OpenVSLAM map (*.ms
                                       is_sqlite(options.path) ? open_stella_sqlite(options.path)
                                                               : open_stella_msgpack(options.path),
                                       options);
-                                }};
+                                },
+                                /*takes_placement=*/true};
 
 }  // namespace zonepack::packer

@@ -339,7 +339,8 @@ class ManifestCheck {
       }
       if (!holds(bytes_of(change->parent(), 1))) return shared("changes");
       if (const auto plain = text("changes", change->what()); !plain) return plain;
-      for (const auto* list : {change->added(), change->removed(), change->changed()}) {
+      for (const auto* list : {change->added(), change->removed(), change->changed(),
+                               change->drawn(), change->replaced()}) {
         if (const auto plain = names(list); !plain) return plain;
       }
       tables_ += kChangeTables;

@@ -99,5 +99,18 @@ TEST_F(Leftovers, AreRemovedOneByOne) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / map_.packs[0].file));
 }
 
+TEST_F(Leftovers, OfKilledWritersAreClearedAwayWherePartsOnly) {
+  write_bytes(folder_ / "a-0123456789abcdef.zpk", Bytes(10));
+  write_bytes(folder_ / kDeadPart, Bytes(3));
+  const std::string living = "manifest.zpm.part-" + std::to_string(getpid()) + "-0";
+  write_bytes(folder_ / living, Bytes(3));
+  write_bytes(folder_ / "report.html.part-2000000000-0", Bytes(3));
+  remove_parts_of_killed(folder_.path());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / kDeadPart));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / living));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "report.html.part-2000000000-0"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a-0123456789abcdef.zpk"));
+}
+
 }  // namespace
 }  // namespace zonepack::packer

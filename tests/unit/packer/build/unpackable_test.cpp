@@ -35,7 +35,9 @@ TEST_P(Unpackable, IsNamedAndLeftOutOnRequest) {
   options.out = folder / "map";
   std::ofstream(options.zones) << R"({"type": "FeatureCollection", "features": [
     {"type": "Feature", "properties": {"name": "hall", "zone_type": "corridor"}, "geometry":
-     {"type": "Polygon", "coordinates": [[[0, 0], [10, 0], [10, 4], [0, 4], [0, 0]]]}}]})";
+     {"type": "Polygon", "coordinates": [[[0, 0], [1.5, 0], [1.5, 4], [0, 4], [0, 0]]]}},
+    {"type": "Feature", "properties": {"name": "lab", "zone_type": "room"}, "geometry":
+     {"type": "Polygon", "coordinates": [[[1.5, 0], [10, 0], [10, 4], [1.5, 4], [1.5, 0]]]}}]})";
   test_support::RtabmapFixture fixture;
   for (std::int32_t id = 1; id <= 3; ++id) {
     test_support::SignatureRecipe recipe;
@@ -43,6 +45,8 @@ TEST_P(Unpackable, IsNamedAndLeftOutOnRequest) {
     recipe.x = static_cast<float>(id);
     recipe.y = 2;
     recipe.global_descriptor = true;
+    if (id == 1)
+      recipe.neighbours = {2};  // from one zone to the other: no edge without signature 2
     fixture.signatures.push_back(test_support::make_signature(recipe));
   }
   test_support::write_rtabmap_database(options.source.path, fixture);

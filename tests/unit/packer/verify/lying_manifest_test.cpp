@@ -152,6 +152,97 @@ INSTANTIATE_TEST_SUITE_P(
             "fewer than its features alone take"}),
     [](const auto& test) { return test.param.name; });
 
+// A version that an update made: zones that it named are as of change 1.
+VersionChange version_change(std::vector<std::string> added, std::vector<std::string> changed,
+                             std::vector<std::string> drawn, std::vector<std::string> replaced,
+                             std::uint32_t zones_before = 2) {
+  VersionChange out;
+  out.what = "add";
+  out.zones = zones_before;
+  out.added = std::move(added);
+  out.changed = std::move(changed);
+  out.drawn = std::move(drawn);
+  out.replaced = std::move(replaced);
+  return out;
+}
+
+// Room a ends at x 1, so that signature 1 at x 2 stands in b.
+void give_signature_1_to_b(SmallMap& m) {
+  m.plan.zones[0].polygon.outer = {{0, 0}, {1, 0}, {1, 4}, {0, 4}};
+  m.plan.zones[1].polygon.outer = {{1, 0}, {8, 0}, {8, 4}, {1, 4}};
+  m.plan.portals[0].segment = {{1, 1.5}, {1, 2.5}};
+}
+
+// Room a reaches to x 7, so that signature 2 at x 6 stands in it and not in b.
+void give_signature_2_to_a(SmallMap& m) {
+  m.plan.zones[0].polygon.outer = {{0, 0}, {7, 0}, {7, 4}, {0, 4}};
+  m.plan.zones[1].polygon.outer = {{7, 0}, {8, 0}, {8, 4}, {7, 4}};
+  m.plan.portals[0].segment = {{7, 1.5}, {7, 2.5}};
+}
+
+TEST(UpdatedManifests, MayHaveDrawnAZoneAroundASignatureOfOneThatStays) {
+  SmallMap added;
+  give_signature_1_to_b(added);
+  added.content.changes = {version_change({"b"}, {}, {}, {}, 1)};
+  added.write_manifest();
+  EXPECT_TRUE(verify_map(added.folder).whole()) << listed(verify_map(added.folder).problems);
+  SmallMap redrawn;
+  give_signature_1_to_b(redrawn);
+  redrawn.content.changes = {version_change({}, {"b"}, {"b"}, {"b"})};
+  redrawn.write_manifest();
+  EXPECT_TRUE(verify_map(redrawn.folder).whole()) << listed(verify_map(redrawn.folder).problems);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfAnUpdate, LyingManifest,
+    testing::Values(
+        Lie{"SignatureOfANewZoneThatStandsInAnOldOne",
+            [](SmallMap& m) {
+              give_signature_2_to_a(m);
+              m.content.changes = {version_change({"b"}, {}, {}, {}, 1)};
+            },
+            "signature 2 is in the pack of zone b, by the polygons it belongs to zone a"},
+        Lie{"SignatureOfAChangedZoneThatWasNotDrawn",
+            [](SmallMap& m) {
+              give_signature_1_to_b(m);
+              m.content.changes = {version_change({}, {"b"}, {}, {})};
+            },
+            "signature 1 is in the pack of zone a, by the polygons it belongs to zone b"},
+        Lie{"SignatureThatCameAfterTheOtherZoneWasDrawn",
+            [](SmallMap& m) {
+              give_signature_1_to_b(m);
+              m.content.changes = {version_change({}, {"b"}, {"b"}, {"b"}),
+                                   version_change({}, {"a"}, {}, {"a"})};
+            },
+            "signature 1 is in the pack of zone a, by the polygons it belongs to zone b"},
+        Lie{"AddedZoneThatIsNotThere",
+            [](SmallMap& m) { m.content.changes = {version_change({"c"}, {}, {}, {}, 1)}; },
+            "says in change number 1 that zone c was added, and then has none of that name"},
+        Lie{"RemovedZoneThatIsThere",
+            [](SmallMap& m) {
+              m.content.changes = {version_change({}, {}, {}, {}, 2)};
+              m.content.changes[0].removed = {"a"};
+            },
+            "that zone a was removed, and then has one of that name"},
+        Lie{"ZonesBefore",
+            [](SmallMap& m) { m.content.changes = {version_change({"b"}, {}, {}, {}, 2)}; },
+            "says in change number 1 there were 2 zones before it, by its lists 1"},
+        Lie{"AddedAndChanged",
+            [](SmallMap& m) { m.content.changes = {version_change({"b"}, {"b"}, {}, {}, 1)}; },
+            "that zone b was there before, and was added"},
+        Lie{"OutOfOrder",
+            [](SmallMap& m) {
+              m.content.changes = {version_change({}, {"b", "a"}, {}, {})};
+            },
+            "that zones were changed out of order or twice"},
+        Lie{"AddedTwice",
+            [](SmallMap& m) {
+              m.content.changes = {version_change({"b"}, {}, {}, {}, 1),
+                                   version_change({"b"}, {}, {}, {}, 1)};
+            },
+            "says in change number 1 that zone b was added, and then has none of that name"}),
+    [](const auto& test) { return test.param.name; });
+
 // Every claim of the manifest that a pack or another part of the manifest can contradict. Left out:
 // what is in the manifest only (lineage, labels, types, which portals there are, texts of the
 // provenance) and coordinates, which are compared with signatures and borders with some tolerance.

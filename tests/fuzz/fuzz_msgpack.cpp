@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstddef>
+#include <cstdint>
+
+#include "tests/fuzz/input_entries.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  zonepack::fuzz::read_msgpack(std::as_bytes(std::span(data, size)));
+  return 0;
+}
