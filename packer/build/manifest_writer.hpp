@@ -45,7 +45,7 @@ struct ManifestContent {
 // A signature's entry in the coarse pose graph.
 fb::Node node_at(std::int32_t id, const Transform& T_map_base);
 
-// The bytes of manifest.zpm: of minor version 0 without layers and changes. Throws
+// The bytes of manifest.zpm: of minor version 0 without layers, changes and blocks. Throws
 // std::runtime_error naming the limit of the format that the content exceeds.
 Bytes manifest_bytes(const ManifestContent& content);
 

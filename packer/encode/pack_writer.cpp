@@ -33,14 +33,14 @@ AtomicFile open_part(const std::filesystem::path& folder) {
 
 }  // namespace
 
-PackWriter::PackWriter(const std::filesystem::path& folder, std::string zone)
+PackWriter::PackWriter(const std::filesystem::path& folder, std::string zone, std::uint16_t minor)
     : folder_(folder),
       zone_(std::move(zone)),
+      header_{.minor = minor},
       file_(open_part(folder)),
       compressed_(static_cast<std::size_t>(LZ4_compressBound(static_cast<int>(kSlotBytes)))),
       lz4_state_(static_cast<std::size_t>(LZ4_sizeofStateHC())) {
-  const PackHeader header;
-  write(std::as_bytes(std::span(&header, 1)));
+  write(std::as_bytes(std::span(&header_, 1)));
 }
 
 void PackWriter::add(SignatureRecord& record, float x, float y) {
@@ -184,7 +184,8 @@ PackSummary PackWriter::finish(PayloadMask packed) {
   PackTail tail;
   tail.index_offset = offset_;
   tail.index_size = index.size();
-  tail.digest = pack_digest(PackHeader(), index, tail);
+  tail.minor = header_.minor;
+  tail.digest = pack_digest(header_, index, tail);
   write(index);
   write(std::as_bytes(std::span(&tail, 1)));
 

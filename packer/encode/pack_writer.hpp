@@ -39,7 +39,8 @@ struct PackSummary {
 // Memory: the index, and at most a slot or two of rows of each payload kind.
 class PackWriter {
  public:
-  PackWriter(const std::filesystem::path& folder, std::string zone);
+  // `minor`: kPackMinorOfBlocks where signatures may hold blocks of voxels.
+  PackWriter(const std::filesystem::path& folder, std::string zone, std::uint16_t minor = 0);
 
   // Consumes `record`. x, y: position of its base in the map frame, metres.
   void add(SignatureRecord& record, float x, float y);
@@ -68,6 +69,7 @@ class PackWriter {
 
   std::filesystem::path folder_;
   std::string zone_;
+  PackHeader header_;
   AtomicFile file_;
   std::uint64_t offset_ = 0;
   std::vector<fb::ChunkEntry> entries_;

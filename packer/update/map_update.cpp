@@ -402,7 +402,7 @@ void MapUpdate::add_links_to_newcomers(MapSource& database, SignatureRecord& rec
 
 void MapUpdate::pack_zone(MapSource* database, MapFolder& folder, std::uint32_t zone) {
   const Content& content = contents_[zone];
-  PackWriter writer(folder.path(), plan_.zones[zone].name);
+  PackWriter writer(folder.path(), plan_.zones[zone].name, pack_minor(manifest_.payload_mask()));
   std::optional<ZoneRecords> records;
   const fb::Zone* held = nullptr;
   SignatureRecord record;
