@@ -166,7 +166,7 @@ void run_build(const BuildArguments& arguments, std::ostream& text) {
        << std::fixed << std::setprecision(3) << "  charged " << size_text(s.charged_bytes) << ", "
        << ratio(s.charged_bytes, s.feature_row_bytes > 0 ? s.feature_row_bytes : s.source_bytes)
        << (s.feature_row_bytes > 0 ? " of the database's feature rows; stored "
-                                   : " of the source's points; stored ")
+                                   : " of the source's points or blocks; stored ")
        << size_text(s.stored_bytes) << ", " << ratio(s.stored_bytes, s.source_bytes)
        << " of the database's own\n"
        << "  smallest budget " << size_text(s.smallest.bytes) << "\n";

@@ -61,7 +61,13 @@ if(TARGET zonepack)
   add_test(NAME system/clouds
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/cloud_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
-  set_tests_properties(system/stella system/clouds PROPERTIES TIMEOUT 600)
+  add_executable(zone_blocks ${CMAKE_CURRENT_LIST_DIR}/sources/zone_blocks.cpp)
+  zonepack_settings(zone_blocks)
+  target_link_libraries(zone_blocks PRIVATE zonepack_packer_test_support zonepack_client)
+  add_test(NAME system/nvblox
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/nvblox_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/stella system/clouds system/nvblox PROPERTIES TIMEOUT 600)
 endif()
 
 if(TARGET zonepack AND TARGET zoned)
