@@ -49,6 +49,10 @@ void PackWriter::add(SignatureRecord& record, float x, float y) {
   summary_.features += record.features.count;
   positions_.emplace_back(x, y);
   summary_.signature_bytes.push_back(0);
+  if (record.blocks) {
+    if (has_layers_) record.blocks->layers_info.clear();
+    has_layers_ = has_layers_ || !record.blocks->layers_info.empty();
+  }
   for (SourceTable& table : tables_of(record, ordinal)) {
     const fb::PayloadKind kind = kind_of(table.part);
     Queue& queue = queues_[static_cast<std::size_t>(kind)];

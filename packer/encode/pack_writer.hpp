@@ -76,6 +76,7 @@ class PackWriter {
   std::vector<CoreRecord> core_;
   std::array<Queue, kPayloadKinds> queues_;
   LatticeEncoder lattice_;
+  bool has_layers_ = false;  // what the layers of blocks are is written, once a pack
   std::vector<std::pair<float, float>> positions_;
   std::vector<char> compressed_;
   std::vector<char> lz4_state_;

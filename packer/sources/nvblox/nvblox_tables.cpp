@@ -11,7 +11,7 @@
 namespace zonepack::packer {
 namespace {
 
-constexpr std::size_t kMostInfoBytes = 4096;  // of all layers together, carried by every signature
+constexpr std::size_t kMostInfoBytes = 4096;  // of all layers together, carried by every pack
 constexpr std::size_t kMostMetadataRows = 256;
 constexpr double kMostBlockSize_m = 1000;
 
