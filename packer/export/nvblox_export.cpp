@@ -29,14 +29,19 @@ struct Finalize {
 };
 using Statement = std::unique_ptr<sqlite3_stmt, Finalize>;
 
+bool is_schema(const char* table) {
+  return table != nullptr &&
+         (std::strcmp(table, "sqlite_master") == 0 || std::strcmp(table, "sqlite_schema") == 0);
+}
+
 // SQL that came with a map may do this and nothing else: make the one table that it is for.
 int allow_one_table(void* table, int action, const char* first, const char*, const char*,
                     const char*) {
+  const bool is_own =
+      first != nullptr && sqlite3_stricmp(first, static_cast<const char*>(table)) == 0;
   switch (action) {
     case SQLITE_CREATE_TABLE:
-      return first != nullptr && sqlite3_stricmp(first, static_cast<const char*>(table)) == 0
-                 ? SQLITE_OK
-                 : SQLITE_DENY;
+      return is_own ? SQLITE_OK : SQLITE_DENY;
     case SQLITE_CREATE_INDEX:  // of a primary key
       return first != nullptr && std::strncmp(first, "sqlite_autoindex_", 17) == 0 ? SQLITE_OK
                                                                                   : SQLITE_DENY;
@@ -44,11 +49,9 @@ int allow_one_table(void* table, int action, const char* first, const char*, con
       return SQLITE_OK;
     case SQLITE_INSERT:
     case SQLITE_UPDATE:
-    case SQLITE_READ:
-      return first != nullptr && (std::strcmp(first, "sqlite_master") == 0 ||
-                                  std::strcmp(first, "sqlite_schema") == 0)
-                 ? SQLITE_OK
-                 : SQLITE_DENY;
+      return is_schema(first) ? SQLITE_OK : SQLITE_DENY;
+    case SQLITE_READ:  // of its own columns, for a primary key
+      return is_schema(first) || is_own ? SQLITE_OK : SQLITE_DENY;
     default:
       return SQLITE_DENY;
   }

@@ -177,6 +177,7 @@ def create(path, layers, block_size=BLOCK):
         database.execute(f"CREATE TABLE {layer}_data (index_x INTEGER, index_y INTEGER, index_z INTEGER, data BLOB)")
         database.execute(f"INSERT INTO {layer}_metadata VALUES ('block_size', NULL, NULL, ?)", (block_size,))
         database.execute(f"INSERT INTO {layer}_metadata VALUES ('layer_type', ?, NULL, NULL)", (layer,))
+    database.commit()
     return database
 
 

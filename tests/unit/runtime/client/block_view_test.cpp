@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "packer/encode/pack_writer.hpp"
+#include "platform/shared_memory.hpp"
 #include "runtime/client/shared_reader.hpp"
 #include "runtime/client/zonepack_client.h"
 #include "runtime/pack_format/file/pack_reader.hpp"
@@ -56,7 +57,9 @@ TEST_F(Blocks, AreFoundByTheirIndexAndNoOtherIs) {
       for (std::int32_t z = -1; z < 5; ++z) {
         const auto block = blocks_.find(x, y, z);
         found += block.has_value();
-        if (block) EXPECT_EQ(block->position(), (BlockPosition{x, y, z}));
+        if (block) {
+          EXPECT_EQ(block->position(), (BlockPosition{x, y, z}));
+        }
       }
     }
   }
@@ -132,7 +135,7 @@ TEST_F(Blocks, AreReadFromSharedMemoryAndThroughTheCInterface) {
     EXPECT_EQ(zp_copy_block(zone, p.x, p.y, p.z, ZP_ESDF, copy.data(), copy.size()), 1);
     EXPECT_EQ(copy, cube.layers[3].voxels);
     EXPECT_EQ(zp_copy_block(zone, p.x, p.y, p.z, ZP_ESDF, copy.data(), 4096), 0);
-    EXPECT_EQ(zp_copy_block(zone, p.x, p.y, p.z, static_cast<zp_layer>(9), copy.data(), 4096), 0);
+    EXPECT_EQ(zp_copy_block(zone, p.x, p.y, p.z, ZP_TSDF, copy.data(), 4095), 0);
   };
   EXPECT_EQ(zp_read(client, 0, read, &reads), ZP_OK);
   EXPECT_EQ(reads, 1);
