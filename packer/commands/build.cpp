@@ -197,9 +197,10 @@ void add_build_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", options.out, "the map's folder; created when missing")
       ->required()
       ->type_name("DIR");
-  add_payload_option(*command, "--payload", options.payload,
-                     "what to pack besides the core, of features,scan,grid,image,depth,userdata,blocks; "
-                     "default all");
+  add_payload_option(
+      *command, "--payload", options.payload,
+      "what to pack besides the core, of features,scan,grid,image,depth,userdata,blocks; "
+      "default all");
   add_size_option(*command, "--max-zone-bytes", options.max_zone_bytes,
                   "split zones that would charge more into parts along their length");
   add_choice_option<OrphanPolicy>(*command, "--orphans", options.orphans,

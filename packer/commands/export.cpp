@@ -43,7 +43,8 @@ constexpr char kLineFormat[] =
     "are []. A coordinate that the database does not hold is null. Numbers read back exactly, "
     "float32\n"
     "as the double of the same value; NaN and infinities are \"nan\", \"inf\", \"-inf\".\n"
-    "Maps of other kinds are written in their own terms (packer/README.md): a line is a keyframe, a\n"
+    "Maps of other kinds are written in their own terms (packer/README.md): a line is a keyframe, "
+    "a\n"
     "tile of a cloud, or a block of voxels.";
 
 struct ExportArguments {

@@ -20,7 +20,8 @@ class ZoneRecords {
   ZoneRecords(const MapReader& map, const fb::Zone& zone, PayloadMask wanted = kEveryPayload,
               ByteCount window_bytes = kWindowBytes);
 
-  // False at the end; each signature with blocks says what their layers are; `ordinal` receives the signature's place in the zone.
+  // False at the end; each signature with blocks says what their layers are; `ordinal` receives the
+  // signature's place in the zone.
   bool next(SignatureRecord& into, std::uint32_t* ordinal = nullptr);
 
  private:

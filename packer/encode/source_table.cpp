@@ -118,8 +118,8 @@ SourceTable blocks_table(std::uint32_t signature, VoxelLayer layer, const BlockC
   const BlockLayer& blocks = cube.layers[static_cast<std::size_t>(layer)];
   const std::uint32_t planes = planes_of(layer);
   const std::uint32_t bytes = bytes_of_block(planes);
-  SourceTable table{signature, part_of(layer), 0, static_cast<std::uint32_t>(blocks.place.size()),
-                    {},        {},             0, {}};
+  SourceTable table{
+      signature, part_of(layer), 0, static_cast<std::uint32_t>(blocks.place.size()), {}, {}, 0, {}};
   table.attributes.push_back(
       encode_raw(fb::Field::Info, std::as_bytes(std::span(cube.index)), sizeof cube.index));
   const std::vector<std::uint32_t> places(blocks.place.begin(), blocks.place.end());

@@ -136,8 +136,8 @@ void offer_scaled(std::span<const std::uint32_t> values, Form& best) {
   std::int32_t least = std::numeric_limits<std::int32_t>::max();
   std::int32_t most = std::numeric_limits<std::int32_t>::min();
   for (const std::uint32_t bits : values) {
-    const auto k = static_cast<std::int32_t>(std::bit_cast<float>(bits) *
-                                             static_cast<float>(1u << fraction));
+    const auto k =
+        static_cast<std::int32_t>(std::bit_cast<float>(bits) * static_cast<float>(1u << fraction));
     least = std::min(least, k);
     most = std::max(most, k);
   }
@@ -160,10 +160,10 @@ void offer_float(std::span<const std::uint32_t> values, Form& best) {
     form.heads[form.head_count++] = head;
   }
   std::sort(form.heads.begin(), form.heads.begin() + static_cast<std::ptrdiff_t>(form.head_count));
-  form.low_zeros = mantissas == 0 ? kMantissaBits
-                                  : static_cast<unsigned>(std::countr_zero(mantissas));
-  form.bits = static_cast<unsigned>(std::bit_width(form.head_count - 1)) + kMantissaBits -
-              form.low_zeros;
+  form.low_zeros =
+      mantissas == 0 ? kMantissaBits : static_cast<unsigned>(std::countr_zero(mantissas));
+  form.bits =
+      static_cast<unsigned>(std::bit_width(form.head_count - 1)) + kMantissaBits - form.low_zeros;
   form.bytes = 2 + 2 * form.head_count + bytes_for(values.size(), form.bits);
   best.offer(form);
 }
@@ -377,8 +377,8 @@ class PlaneEncoder {
     }
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto end = best_.constants.begin() + static_cast<std::ptrdiff_t>(constants);
-      codes_[i] = static_cast<std::uint8_t>(
-          std::find(best_.constants.begin(), end, values[i]) - best_.constants.begin());
+      codes_[i] = static_cast<std::uint8_t>(std::find(best_.constants.begin(), end, values[i]) -
+                                            best_.constants.begin());
     }
     put_bitmap(values.size(), [&](std::size_t i) { return (codes_[i] & 1) != 0; });
     if (constants == 3) {
@@ -412,8 +412,7 @@ class PlaneEncoder {
         put8(names.size() - 1);
         for (const std::uint32_t name : names) put(name);
         write_values([&names](std::uint32_t value) {
-          return static_cast<std::uint32_t>(std::ranges::lower_bound(names, value) -
-                                            names.begin());
+          return static_cast<std::uint32_t>(std::ranges::lower_bound(names, value) - names.begin());
         });
         return;
       }
@@ -440,9 +439,8 @@ class PlaneEncoder {
       case VoxelForm::kPacked:
         return in_order(form.order, value) - form.base;
       case VoxelForm::kScaled:
-        return static_cast<std::uint32_t>(
-                   static_cast<std::int32_t>(std::bit_cast<float>(value) *
-                                             static_cast<float>(1u << form.fraction))) -
+        return static_cast<std::uint32_t>(static_cast<std::int32_t>(
+                   std::bit_cast<float>(value) * static_cast<float>(1u << form.fraction))) -
                form.base;
       case VoxelForm::kFloat: {
         const auto end = form.heads.begin() + static_cast<std::ptrdiff_t>(form.head_count);

@@ -62,7 +62,8 @@ void write_line(JsonLines& json, std::string_view zone, const SignatureRecord& r
       continue;
     }
     const std::size_t bytes = bytes_of_block(kPlanesOfLayer[layer]);
-    json.base64(std::span(record.blocks->layers[layer].voxels).subspan(*places[layer] * bytes, bytes));
+    json.base64(
+        std::span(record.blocks->layers[layer].voxels).subspan(*places[layer] * bytes, bytes));
   }
   json.end_object();
   json.end_line();

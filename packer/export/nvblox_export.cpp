@@ -44,7 +44,7 @@ int allow_one_table(void* table, int action, const char* first, const char*, con
       return is_own ? SQLITE_OK : SQLITE_DENY;
     case SQLITE_CREATE_INDEX:  // of a primary key
       return first != nullptr && std::strncmp(first, "sqlite_autoindex_", 17) == 0 ? SQLITE_OK
-                                                                                  : SQLITE_DENY;
+                                                                                   : SQLITE_DENY;
     case SQLITE_REINDEX:
       return SQLITE_OK;
     case SQLITE_INSERT:
@@ -87,8 +87,9 @@ class NvbloxWriter {
       create_table(name + "_metadata", layers.layers[i]->metadata_sql);
       create_table(name + "_data", layers.layers[i]->data_sql);
       for (const auto& row : layers.layers[i]->metadata) insert_metadata(name, row);
-      insert_[i] = prepare("INSERT INTO " + name +
-                           "_data (rowid, index_x, index_y, index_z, data) VALUES (?1,?2,?3,?4,?5)");
+      insert_[i] =
+          prepare("INSERT INTO " + name +
+                  "_data (rowid, index_x, index_y, index_z, data) VALUES (?1,?2,?3,?4,?5)");
     }
   }
 
@@ -141,8 +142,8 @@ class NvbloxWriter {
   Statement prepare(const std::string& sql) {
     sqlite3_stmt* statement = nullptr;
     const char* rest = nullptr;
-    const int code = sqlite3_prepare_v2(handle_.get(), sql.c_str(), static_cast<int>(sql.size()) + 1,
-                                        &statement, &rest);
+    const int code = sqlite3_prepare_v2(handle_.get(), sql.c_str(),
+                                        static_cast<int>(sql.size()) + 1, &statement, &rest);
     Statement owned(statement);
     if (code != SQLITE_OK || statement == nullptr) refuse_sql();
     for (; *rest != '\0'; ++rest) {
@@ -180,7 +181,8 @@ class NvbloxWriter {
         sqlite3_bind_text(insert.get(), at, text->data(), static_cast<int>(text->size()),
                           SQLITE_TRANSIENT);
       } else if (const auto* blob = std::get_if<Bytes>(&row[i])) {
-        sqlite3_bind_blob(insert.get(), at, blob->empty() ? static_cast<const void*>("") : blob->data(),
+        sqlite3_bind_blob(insert.get(), at,
+                          blob->empty() ? static_cast<const void*>("") : blob->data(),
                           static_cast<int>(blob->size()), SQLITE_TRANSIENT);
       }
     }
@@ -199,12 +201,15 @@ void export_nvblox(const MapReader& map, std::span<const ZoneId> zones, const st
   const fb::Manifest& manifest = map.manifest();
   const std::string kind = flatbuffers::GetString(manifest.provenance()->source_kind());
   if (kind != "nvblox") {
-    throw std::runtime_error("only a map of kind nvblox is exported as .nvblx, and this one was packed "
-                             "from kind " + kind + "; give --out another ending for JSON lines");
+    throw std::runtime_error(
+        "only a map of kind nvblox is exported as .nvblx, and this one was packed "
+        "from kind " +
+        kind + "; give --out another ending for JSON lines");
   }
   if ((manifest.payload_mask() & mask_of(fb::PayloadKind::Blocks)) == 0) {
-    throw std::runtime_error("the map was packed without its blocks; build it again without "
-                             "--payload, or with --payload blocks");
+    throw std::runtime_error(
+        "the map was packed without its blocks; build it again without "
+        "--payload, or with --payload blocks");
   }
   NvbloxWriter writer(out);
   for (const ZoneId id : zones) {

@@ -97,7 +97,8 @@ Bytes write_block_layers(const BlockLayers& layers) {
   Bytes out;
   put(out, layers.block_size_m);
   std::uint8_t count = 0;
-  for (const auto& layer : layers.layers) count = static_cast<std::uint8_t>(count + layer.has_value());
+  for (const auto& layer : layers.layers)
+    count = static_cast<std::uint8_t>(count + layer.has_value());
   put(out, count);
   for (std::size_t i = 0; i < layers.layers.size(); ++i) {
     if (!layers.layers[i]) continue;

@@ -22,7 +22,7 @@ using TableCell = std::variant<std::monostate, std::int64_t, double, std::string
 
 // The two tables of one layer, but for its blocks.
 struct BlockLayerTables {
-  std::string metadata_sql, data_sql;  // CREATE TABLE …, as the source has it
+  std::string metadata_sql, data_sql;            // CREATE TABLE …, as the source has it
   std::vector<std::vector<TableCell>> metadata;  // rows, all of the same length
 };
 
@@ -35,8 +35,8 @@ struct BlockLayers {
 // As BlockCube::layers_info has it (FORMAT.md: BlockLayers).
 Bytes write_block_layers(const BlockLayers& layers);
 
-// Throws std::runtime_error where the bytes are not whole. SQL is not examined: whoever runs it must
-// not trust it.
+// Throws std::runtime_error where the bytes are not whole. SQL is not examined: whoever runs it
+// must not trust it.
 BlockLayers read_block_layers(std::span<const std::byte> bytes);
 
 }  // namespace zonepack::packer

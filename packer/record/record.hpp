@@ -95,7 +95,8 @@ struct Link {
 // Which parts of a signature are wanted, and which a pack holds. The core (ids, poses, links,
 // calibration) is always carried.
 struct PayloadSet {
-  bool features = true, scan = true, grid = true, image = true, depth = true, userdata = true, blocks = true;
+  bool features = true, scan = true, grid = true, image = true, depth = true, userdata = true,
+       blocks = true;
 };
 
 struct SignatureRecord {

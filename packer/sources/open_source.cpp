@@ -15,8 +15,8 @@
 namespace zonepack::packer {
 namespace {
 
-constexpr std::array kKinds = {&kRtabmapKind, &kStellaKind, &kPcdKind, &kAutowareKind, &kGlimKind,
-                               &kNvbloxKind};
+constexpr std::array kKinds = {&kRtabmapKind,  &kStellaKind, &kPcdKind,
+                               &kAutowareKind, &kGlimKind,   &kNvbloxKind};
 
 }  // namespace
 

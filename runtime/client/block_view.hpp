@@ -30,8 +30,8 @@ struct OccupancyVoxel {
   float log_odds = 0;
 };
 struct EsdfVoxel {
-  float squared_distance = 0;                // of voxels
-  std::array<std::int32_t, 3> parent{};      // towards the nearest site, voxels
+  float squared_distance = 0;            // of voxels
+  std::array<std::int32_t, 3> parent{};  // towards the nearest site, voxels
   std::uint8_t inside = 0, observed = 0, site = 0, padding = 0;
 };
 static_assert(sizeof(TsdfVoxel) == 8 && sizeof(ColorVoxel) == 8 && sizeof(OccupancyVoxel) == 4 &&

@@ -279,7 +279,8 @@ int zp_copy_block(const zp_zone* zone, int32_t x, int32_t y, int32_t z, zp_layer
                   size_t bytes) {
   const auto block = zone->signatures.blocks().find(x, y, z);
   if (!block || layer > ZP_ESDF) return 0;
-  return block->copy(static_cast<zonepack::VoxelLayer>(layer), {static_cast<std::byte*>(out), bytes})
+  return block->copy(static_cast<zonepack::VoxelLayer>(layer),
+                     {static_cast<std::byte*>(out), bytes})
              ? 1
              : 0;
 }

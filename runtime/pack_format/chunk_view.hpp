@@ -25,10 +25,9 @@ constexpr PayloadMask mask_of(fb::PayloadKind kind) noexcept {
 inline constexpr PayloadMask kCoreOnly = 1;
 inline constexpr PayloadMask kEveryPayload = (1u << kPayloadKinds) - 1;
 // What a robot needs of any kind of map; the default of memory.payload and of plan.
-inline constexpr PayloadMask kDefaultPayload = kCoreOnly | mask_of(fb::PayloadKind::Features) |
-                                               mask_of(fb::PayloadKind::Scan) |
-                                               mask_of(fb::PayloadKind::Grid) |
-                                               mask_of(fb::PayloadKind::Blocks);
+inline constexpr PayloadMask kDefaultPayload =
+    kCoreOnly | mask_of(fb::PayloadKind::Features) | mask_of(fb::PayloadKind::Scan) |
+    mask_of(fb::PayloadKind::Grid) | mask_of(fb::PayloadKind::Blocks);
 
 // The kind whose payload a table of this part belongs to.
 fb::PayloadKind kind_of(fb::Part part) noexcept;

@@ -239,14 +239,14 @@ std::uint32_t VoxelPlane::value(std::uint32_t place) const noexcept {
       const std::uint32_t mantissa_bits = kMantissaBits - low_zeros_;
       const std::uint32_t mantissa = bits & ((1U << mantissa_bits) - 1);
       const std::uint32_t head = bits >> mantissa_bits;
-      return std::uint32_t{heads_[head & (kMostHeads - 1)]} << kMantissaBits |
-             mantissa << low_zeros_;
+      return std::uint32_t{heads_[head & (kMostHeads - 1)]} << kMantissaBits | mantissa
+                                                                                   << low_zeros_;
     }
     case VoxelForm::kBytes: {
       std::uint32_t value = 0, at = 0;
       for (std::size_t i = 0; i < 4; ++i) {
-        const std::uint32_t part = static_cast<std::uint32_t>(std::uint64_t{bits} >> at) &
-                                   ((1U << byte_bits_[i]) - 1);
+        const std::uint32_t part =
+            static_cast<std::uint32_t>(std::uint64_t{bits} >> at) & ((1U << byte_bits_[i]) - 1);
         value |= ((byte_base_[i] + part) & 0xFFU) << (8 * i);
         at += byte_bits_[i];
       }

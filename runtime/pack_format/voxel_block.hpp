@@ -33,19 +33,27 @@ constexpr std::uint32_t bytes_of_block(std::uint32_t planes) noexcept {
 
 // How the values of a list lie on the voxels, first step: 512 voxels to `runs` values.
 enum class VoxelSpread : std::uint8_t {
-  kEach,         // a value for each voxel
-  kColumns,      // one for each 8 voxels along z
-  kRuns,         // a bit for each voxel: set, the next value begins
-  kAsBefore,     // the runs of the plane before
+  kEach,      // a value for each voxel
+  kColumns,   // one for each 8 voxels along z
+  kRuns,      // a bit for each voxel: set, the next value begins
+  kAsBefore,  // the runs of the plane before
 };
 // Second step: of these values, those that are in the list; the others are named constants.
 enum class VoxelChoice : std::uint8_t {
-  kNone,         // all are in the list
-  kOneOfTwo,     // a bit each: set, the next of the list; clear, the constant
-  kOneOfFour,    // two bits each, in two bitmaps: both set, the next of the list
-  kAsBefore,     // the choice of the plane before, with other constants
+  kNone,       // all are in the list
+  kOneOfTwo,   // a bit each: set, the next of the list; clear, the constant
+  kOneOfFour,  // two bits each, in two bitmaps: both set, the next of the list
+  kAsBefore,   // the choice of the plane before, with other constants
 };
-enum class VoxelForm : std::uint8_t { kConstant, kRaw, kPacked, kScaled, kDictionary, kFloat, kBytes };
+enum class VoxelForm : std::uint8_t {
+  kConstant,
+  kRaw,
+  kPacked,
+  kScaled,
+  kDictionary,
+  kFloat,
+  kBytes
+};
 enum class VoxelOrder : std::uint8_t { kUnsigned, kInt, kFloat };
 
 inline constexpr std::uint32_t kMostHeads = 16;

@@ -50,8 +50,8 @@ class TableView {
 class ZoneView {
  public:
   // Refuses tables whose records leave out, repeat or contradict rows (kMismatch; detail: the
-  // ordinal), signatures without a core record, ids out of order, and blocks that are there twice. With a range, the view holds
-  // only its signatures, and the chunks may lack parts of others.
+  // ordinal), signatures without a core record, ids out of order, and blocks that are there twice.
+  // With a range, the view holds only its signatures, and the chunks may lack parts of others.
   static Result<ZoneView> make(std::span<const ChunkRef> chunks, OrdinalRange range = {});
 
   // The same from checked core chunks and the records of all other chunks.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// usage: block_bench MAP: what it takes to find a block of voxels in a zone in memory, to decode it, and to
-// read one voxel in place; of the largest zone of an nvblox map.
+// usage: block_bench MAP: what it takes to find a block of voxels in a zone in memory, to decode
+// it, and to read one voxel in place; of the largest zone of an nvblox map.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -74,7 +74,8 @@ int main(int argc, char** argv) {
   });
   std::printf("zone %s: %u blocks, read, checked and indexed in %.1f ms\n", zone->name()->c_str(),
               blocks.size(), (opened - begin) / 1e6);
-  std::printf("find %.0f ns, find what is not there %.0f ns, find and copy 512 voxels %.2f us, find and "
-              "read one voxel %.0f ns (%zu found, sum %g)\n",
-              find, miss, copy / 1e3, at, found, static_cast<double>(sum));
+  std::printf(
+      "find %.0f ns, find what is not there %.0f ns, find and copy 512 voxels %.2f us, find and "
+      "read one voxel %.0f ns (%zu found, sum %g)\n",
+      find, miss, copy / 1e3, at, found, static_cast<double>(sum));
 }

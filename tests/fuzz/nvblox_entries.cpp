@@ -58,7 +58,8 @@ Bytes database(const packer::BlockCube& cube) {
   for (std::size_t i = 0; i < 4; ++i) {
     const std::string name = packer::kBlockLayerNames[i];
     const std::string sql = layers.layers[i]->metadata_sql + ";" + layers.layers[i]->data_sql +
-                            ";INSERT INTO " + name + "_metadata VALUES ('block_size',NULL,NULL,0.5)";
+                            ";INSERT INTO " + name +
+                            "_metadata VALUES ('block_size',NULL,NULL,0.5)";
     require(sqlite3_exec(handle, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK);
     const std::size_t bytes = bytes_of_block(kPlanes[i]);
     for (std::size_t k = 0; k < cube.layers[i].place.size(); ++k) {

@@ -196,8 +196,9 @@ packer::BlockCube make_blocks(std::int32_t id) {
   layers.block_size_m = 0.5;
   for (std::size_t i = 0; i < layers.layers.size(); ++i) {
     const std::string name = packer::kBlockLayerNames[i];
-    layers.layers[i] = {"CREATE TABLE " + name + "_metadata (param_name TEXT, value_string TEXT, "
-                                                 "value_int INTEGER, value_float REAL)",
+    layers.layers[i] = {"CREATE TABLE " + name +
+                            "_metadata (param_name TEXT, value_string TEXT, "
+                            "value_int INTEGER, value_float REAL)",
                         "CREATE TABLE " + name + "_data (index_x, index_y, index_z, data BLOB)",
                         {{std::string("block_size"), {}, {}, 0.5}}};
   }

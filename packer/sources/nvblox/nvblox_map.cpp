@@ -23,8 +23,8 @@ auto key_of(const NvbloxBlock& b) {
 }
 
 auto order_of(const NvbloxBlock& b) {
-  return std::tuple_cat(key_of(b), std::tuple(static_cast<std::uint32_t>(b.layer), place_of(b),
-                                              b.row));
+  return std::tuple_cat(key_of(b),
+                        std::tuple(static_cast<std::uint32_t>(b.layer), place_of(b), b.row));
 }
 
 // As a signature's pose has it, so that a zone is asked for the same place.
@@ -33,11 +33,11 @@ double centre_of(std::int32_t index, double block_size_m) {
 }
 
 // An id that a cube keeps while the map grows: its place within some kilometres, and which of the
-// zones it is in.
+// zones it is in. 0: none.
 std::int32_t wanted_id(const NvbloxBlock& b, std::uint32_t part) {
   const std::int64_t x = std::int64_t{cube_of(b.x)} + 512, y = std::int64_t{cube_of(b.y)} + 512,
                      z = std::int64_t{cube_of(b.z)} + 256;
-  if (x < 0 || x >= 1024 || y < 0 || y >= 1024 || z < 0 || z >= 511 || part > 3) return 1;
+  if (x < 0 || x >= 1024 || y < 0 || y >= 1024 || z < 0 || z >= 511 || part > 3) return 0;
   return static_cast<std::int32_t>(((x * 1024 + y) * 511 + z) * 4 + part + 1);
 }
 
@@ -93,8 +93,8 @@ class Reading {
       block.y = index_of(*row, 2, where + ": index_y");
       block.z = index_of(*row, 3, where + ": index_z");
       block.layer = layer & 3U;
-      block.wrong_length = row->is_null(4) || static_cast<std::uint64_t>(row->integer(4)) !=
-                                                  block_bytes_of(layer);
+      block.wrong_length =
+          row->is_null(4) || static_cast<std::uint64_t>(row->integer(4)) != block_bytes_of(layer);
       block.row = static_cast<std::uint32_t>(number);
       block.zone = zone_of(block) & kNoZone;
       map_.blocks.push_back(block);
@@ -122,9 +122,9 @@ class Reading {
   std::uint32_t zone_of(const NvbloxBlock& b) const {
     if (!options_.zone_at) return 0;
     const double size = map_.layers.block_size_m;
-    return std::min(options_.zone_at(centre_of(b.x, size), centre_of(b.y, size),
-                                     centre_of(b.z, size)),
-                    kNoZone);
+    return std::min(
+        options_.zone_at(centre_of(b.x, size), centre_of(b.y, size), centre_of(b.z, size)),
+        kNoZone);
   }
 
   void cut() {
@@ -135,10 +135,9 @@ class Reading {
         ++end;
       }
       const NvbloxBlock& first = map_.blocks[begin];
-      const bool same_cube =
-          begin > 0 && cube_of(map_.blocks[begin - 1].x) == cube_of(first.x) &&
-          cube_of(map_.blocks[begin - 1].y) == cube_of(first.y) &&
-          cube_of(map_.blocks[begin - 1].z) == cube_of(first.z);
+      const bool same_cube = begin > 0 && cube_of(map_.blocks[begin - 1].x) == cube_of(first.x) &&
+                             cube_of(map_.blocks[begin - 1].y) == cube_of(first.y) &&
+                             cube_of(map_.blocks[begin - 1].z) == cube_of(first.z);
       part = same_cube ? part + 1 : 0;
       NvbloxCube& cube = map_.cubes.emplace_back();
       cube.first = begin;
@@ -153,10 +152,9 @@ class Reading {
   }
 
   std::int32_t free_id(std::int32_t wanted) {
-    while (!ids_.insert(wanted).second) {
-      wanted = wanted == std::numeric_limits<std::int32_t>::max() ? 1 : wanted + 1;
-    }
-    return wanted;
+    if (wanted > 0 && ids_.insert(wanted).second) return wanted;
+    while (!ids_.insert(next_free_).second) ++next_free_;
+    return next_free_;
   }
 
   void place_base(NvbloxCube& cube) const {
@@ -179,24 +177,27 @@ class Reading {
     }
   }
 
-  void find_damage(NvbloxCube& cube) const {
+  void find_damage(NvbloxCube& cube) {
     const auto own = std::span(map_.blocks).subspan(cube.first, cube.count);
     for (std::size_t i = 0; i < own.size(); ++i) {
       const NvbloxBlock& b = own[i];
       const std::string table = std::string(kBlockLayerNames[b.layer]) + "_data";
       if (b.wrong_length != 0) {
-        SqliteQuery row(file_, "SELECT length(data) FROM " + table + " WHERE rowid=?1",
-                        kLargestValueBytes);
-        row.restart(std::int64_t{b.row});
-        const auto found = row.step() ? static_cast<std::uint64_t>(row.integer(0)) : 0;
+        auto& row = lengths_[b.layer];
+        if (!row) {
+          row.emplace(file_, "SELECT length(data) FROM " + table + " WHERE rowid=?1",
+                      kLargestValueBytes);
+        }
+        row->restart(std::int64_t{b.row});
+        const auto found = row->step() ? static_cast<std::uint64_t>(row->integer(0)) : 0;
         cube.damage = Damage{cube.id, table, block_text(b) + ": " + length_problem(b.layer, found)};
         return;
       }
       if (i > 0 && own[i - 1].layer == b.layer && place_of(own[i - 1]) == place_of(b)) {
-        cube.damage = Damage{cube.id, table,
-                             block_text(b) + " is there twice, in rows " +
-                                 std::to_string(own[i - 1].row) + " and " + std::to_string(b.row) +
-                                 "; expected each index once"};
+        cube.damage =
+            Damage{cube.id, table,
+                   block_text(b) + " is there twice, in rows " + std::to_string(own[i - 1].row) +
+                       " and " + std::to_string(b.row) + "; expected each index once"};
         return;
       }
     }
@@ -218,6 +219,8 @@ class Reading {
   const SourceOptions& options_;
   NvbloxMap map_;
   std::set<std::int32_t> ids_;
+  std::int32_t next_free_ = 1;
+  std::array<std::optional<SqliteQuery>, 4> lengths_;
 };
 
 }  // namespace

@@ -18,7 +18,8 @@ constexpr double kMostBlockSize_m = 1000;
 // The CREATE TABLE of each table that may belong to a layer, by its lower-case name.
 std::map<std::string, std::string> layer_tables(const SqliteFile& file) {
   std::map<std::string, std::string> tables;
-  SqliteQuery row(file, "SELECT lower(name), sql FROM sqlite_master WHERE type='table' LIMIT 10000");
+  SqliteQuery row(file,
+                  "SELECT lower(name), sql FROM sqlite_master WHERE type='table' LIMIT 10000");
   while (row.step()) {
     const std::string name(row.text(0));
     if (name.ends_with("_data") || name.ends_with("_metadata")) tables[name] = row.text(1);
@@ -39,8 +40,8 @@ std::optional<std::size_t> column_of(const std::vector<std::string>& columns, co
 std::size_t require_column(const SqliteFile& file, const std::string& table,
                            const std::vector<std::string>& columns, const char* name) {
   if (const auto column = column_of(columns, name)) return *column;
-  fail(file, table + ": has no column " + name +
-                 ", which nvblox writes; save the map again with nvblox");
+  fail(file,
+       table + ": has no column " + name + ", which nvblox writes; save the map again with nvblox");
 }
 
 TableCell cell_of(const SqliteQuery& row, int column) {
@@ -90,8 +91,9 @@ double read_metadata(const SqliteFile& file, const std::string& table, BlockLaye
     if (!block_size && as_int) block_size = number_of(cells[*as_int]);
   }
   if (!stated) {
-    fail(file, table + ": has no row block_size, so nothing says where its blocks lie; save the "
-                       "map again with nvblox");
+    fail(file, table +
+                   ": has no row block_size, so nothing says where its blocks lie; save the "
+                   "map again with nvblox");
   }
   if (!block_size || !(*block_size > 0) || !(*block_size <= kMostBlockSize_m)) {
     fail(file, table + ": block_size: expected metres over 0 and up to 1000, found " +
@@ -124,8 +126,9 @@ NvbloxTables read_nvblox_tables(const SqliteFile& file) {
     const auto metadata = tables.find(layer + "_metadata"), data = tables.find(layer + "_data");
     if (metadata == tables.end() && data == tables.end()) {
       if (i > 0) continue;
-      fail(file, "has no TSDF layer (tables tsdf_layer_metadata and tsdf_layer_data), without which "
-                 "nvblox itself loads no map; save the map again with nvblox");
+      fail(file,
+           "has no TSDF layer (tables tsdf_layer_metadata and tsdf_layer_data), without which "
+           "nvblox itself loads no map; save the map again with nvblox");
     }
     for (const char* part : {"_metadata", "_data"}) {
       if (tables.contains(layer + part)) continue;
@@ -143,7 +146,8 @@ NvbloxTables read_nvblox_tables(const SqliteFile& file) {
     } else if (size != out.layers.block_size_m) {
       fail(file, layer + "_metadata: block_size: expected " +
                      shortest_number(out.layers.block_size_m) + " m as in " + first + ", found " +
-                     shortest_number(size) + "; blocks of different sizes cannot be packed together");
+                     shortest_number(size) +
+                     "; blocks of different sizes cannot be packed together");
     }
   }
   for (const auto& [name, sql] : tables) {

@@ -13,8 +13,8 @@
 // The layout of a pack file: header, chunks, index, tail. FORMAT.md describes it byte by byte.
 namespace zonepack {
 
-inline constexpr std::uint16_t kPackMajor = 1;  // other majors are refused
-inline constexpr std::uint16_t kPackMinor = 1;  // greater minors are read: they only add
+inline constexpr std::uint16_t kPackMajor = 1;          // other majors are refused
+inline constexpr std::uint16_t kPackMinor = 1;          // greater minors are read: they only add
 inline constexpr std::uint16_t kPackMinorOfBlocks = 1;  // packs without blocks are of minor 0
 
 using Magic = std::array<std::uint8_t, 8>;

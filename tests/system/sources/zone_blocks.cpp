@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// usage: zone_blocks MAP: every block of voxels of every zone, as a program sees it in zoned's memory:
-// zone, index, layer and BLAKE2b-128 of the block as nvblox stores it, a line each.
+// usage: zone_blocks MAP: every block of voxels of every zone, as a program sees it in zoned's
+// memory: zone, index, layer and BLAKE2b-128 of the block as nvblox stores it, a line each.
 #include <cstdio>
 #include <cstdlib>
 #include <string>

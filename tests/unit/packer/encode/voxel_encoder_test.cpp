@@ -157,9 +157,8 @@ TEST(VoxelEncoder, RestoresPlanesOfEveryMixture) {
 
 TEST(VoxelBlock, RefusesEveryBlockThatIsCutOrLonger) {
   const auto values = noise();
-  const Encoded block = encoded(block_of(2, [&](auto i, auto p) {
-    return i % 4 == 1 ? values[i] : i / 100 + p;
-  }), 2);
+  const Encoded block =
+      encoded(block_of(2, [&](auto i, auto p) { return i % 4 == 1 ? values[i] : i / 100 + p; }), 2);
   VoxelPlanes planes;
   for (std::size_t size = 0; size < block.size; ++size) {
     EXPECT_FALSE(parse_block(ByteSpan(block.bytes).first(size), 2, planes)) << size;
