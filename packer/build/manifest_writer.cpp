@@ -3,6 +3,7 @@
 
 #include <lz4.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -168,7 +169,12 @@ Bytes manifest_bytes(const ManifestContent& content) {
   require_within(LimitId::kManifestBytes, builder.GetSize());
   ManifestHeader header;
   header.size = builder.GetSize();
-  if (!content.layers.empty() || !content.changes.empty()) header.minor = kManifestMinorOfLayers;
+  constexpr auto blocks = static_cast<std::size_t>(fb::PayloadKind::Blocks);
+  const bool any_blocks = std::ranges::any_of(
+      *content.packs, [](const PackSummary& pack) { return pack.payloads[blocks].chunks > 0; });
+  if (!content.layers.empty() || !content.changes.empty() || any_blocks) {
+    header.minor = kManifestMinorOfLayers;
+  }
   Bytes file(sizeof header + header.size + sizeof(ManifestTail));
   std::memcpy(file.data(), &header, sizeof header);
   std::memcpy(file.data() + sizeof header, builder.GetBufferPointer(), header.size);

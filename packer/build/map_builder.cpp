@@ -46,6 +46,7 @@ class MapBuilder {
 
  private:
   SourceOptions with_zones(SourceOptions source) const;
+  PayloadMask packed_payload() const;
   void outline();
   void place();
   void pack(MapFolder& folder, const ZonePlan& plan, const std::vector<std::uint32_t>& zone_of);
@@ -61,6 +62,7 @@ class MapBuilder {
   ZoneFile zones_;
   ZoneLookup lookup_;
   std::unique_ptr<MapSource> source_;
+  const PayloadMask payload_ = packed_payload();
   BuildSummary summary_;
 
   std::vector<SignaturePlace> places_;  // of the signatures to pack, by id
@@ -82,6 +84,13 @@ SourceOptions MapBuilder::with_zones(SourceOptions source) const {
     return lookup_.at({x_m, y_m}, z_m);
   };
   return source;
+}
+
+// Of the kinds asked for, those that such a source may have: maps of other kinds keep their bytes
+// when a kind of payload is added.
+PayloadMask MapBuilder::packed_payload() const {
+  constexpr PayloadMask kBlocks = mask_of(fb::PayloadKind::Blocks);
+  return options_.payload & (source_->outline().is_blocks ? kCoreOnly | kBlocks : ~kBlocks);
 }
 
 void MapBuilder::outline() {
@@ -176,9 +185,9 @@ void MapBuilder::pack(MapFolder& folder, const ZonePlan& plan,
 }
 
 void MapBuilder::pack_zone(MapSource& source, MapFolder& folder, std::size_t zone) {
-  PackWriter writer(folder.path(), plan_.zones[zone].name);
+  PackWriter writer(folder.path(), plan_.zones[zone].name, pack_minor(payload_));
   SignatureRecord record;
-  const PayloadSet wanted = payload_set(options_.payload);
+  const PayloadSet wanted = payload_set(payload_);
   for (const std::size_t member : members_[zone]) {
     const SignaturePlace& place = places_[member];
     progress_.advance();
@@ -200,13 +209,13 @@ void MapBuilder::pack_zone(MapSource& source, MapFolder& folder, std::size_t zon
     for (const Link& link : record.links) links_[zone].emplace_back(record.id, link.to);
     writer.add(record, static_cast<float>(place.p_map.x_m), static_cast<float>(place.p_map.y_m));
   }
-  packs_[zone] = writer.finish(options_.payload);
+  packs_[zone] = writer.finish(payload_);
   folder.keep(packs_[zone].file);
 }
 
 ByteCount MapBuilder::charged(std::size_t zone) const {
   return packs_[zone].slots[slot_table_index(
-             payload_closure(kDefaultPayload, packs_[zone].grid_needs_scan), options_.payload)] *
+             payload_closure(kDefaultPayload, packs_[zone].grid_needs_scan), payload_)] *
          kSlotBytes;
 }
 
@@ -295,7 +304,7 @@ void MapBuilder::finish(MapFolder& folder) {
   }
   content.edges = edges.list();
   content.lineage = lineage();
-  content.payload = options_.payload;
+  content.payload = payload_;
   content.source_kind = source_->outline().kind;
   content.source_version = summary_.schema_version;
   content.options = packing_text({.orphans = options_.orphans,

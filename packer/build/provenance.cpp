@@ -48,7 +48,8 @@ SourceBytes source_bytes(const MapOutline& outline) noexcept {
   SourceBytes source;
   source.features = outline.feature_count;
   source.feature_rows = outline.feature_bytes;
-  source.bytes = source.feature_rows + outline.scan_bytes + outline.grid_bytes;
+  source.bytes =
+      source.feature_rows + outline.scan_bytes + outline.grid_bytes + outline.block_bytes;
   return source;
 }
 

@@ -166,7 +166,7 @@ void run_build(const BuildArguments& arguments, std::ostream& text) {
        << std::fixed << std::setprecision(3) << "  charged " << size_text(s.charged_bytes) << ", "
        << ratio(s.charged_bytes, s.feature_row_bytes > 0 ? s.feature_row_bytes : s.source_bytes)
        << (s.feature_row_bytes > 0 ? " of the database's feature rows; stored "
-                                   : " of the source's points; stored ")
+                                   : " of the source's points or blocks; stored ")
        << size_text(s.stored_bytes) << ", " << ratio(s.stored_bytes, s.source_bytes)
        << " of the database's own\n"
        << "  smallest budget " << size_text(s.smallest.bytes) << "\n";
@@ -197,9 +197,10 @@ void add_build_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", options.out, "the map's folder; created when missing")
       ->required()
       ->type_name("DIR");
-  add_payload_option(*command, "--payload", options.payload,
-                     "what to pack besides the core, of features,scan,grid,image,depth,userdata; "
-                     "default all");
+  add_payload_option(
+      *command, "--payload", options.payload,
+      "what to pack besides the core, of features,scan,grid,image,depth,userdata,blocks; "
+      "default all");
   add_size_option(*command, "--max-zone-bytes", options.max_zone_bytes,
                   "split zones that would charge more into parts along their length");
   add_choice_option<OrphanPolicy>(*command, "--orphans", options.orphans,

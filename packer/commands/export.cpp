@@ -14,6 +14,7 @@
 
 #include "packer/console/command_line.hpp"
 #include "packer/console/output_path.hpp"
+#include "packer/export/nvblox_export.hpp"
 #include "packer/export/zone_export.hpp"
 #include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
@@ -41,7 +42,10 @@ constexpr char kLineFormat[] =
     "any\n"
     "are []. A coordinate that the database does not hold is null. Numbers read back exactly, "
     "float32\n"
-    "as the double of the same value; NaN and infinities are \"nan\", \"inf\", \"-inf\".";
+    "as the double of the same value; NaN and infinities are \"nan\", \"inf\", \"-inf\".\n"
+    "Maps of other kinds are written in their own terms (packer/README.md): a line is a keyframe, "
+    "a\n"
+    "tile of a cloud, or a block of voxels.";
 
 struct ExportArguments {
   std::string folder;
@@ -73,10 +77,16 @@ void write_to_standard_output(std::string_view piece) {
   }
 }
 
+bool is_nvblox(const std::string& out) { return out.ends_with(".nvblx"); }
+
 void run_export(const ExportArguments& arguments) {
   require_writable(arguments.out);
   const MapReader map(arguments.folder);
   const std::vector<ZoneId> zones = chosen_zones(map, arguments.zones);
+  if (is_nvblox(arguments.out) && !arguments.jsonl) {
+    export_nvblox(map, zones, arguments.out);
+    return;
+  }
   const auto require = [&](const Result<void>& written) {
     if (written) return;
     throw std::runtime_error(cannot_write(arguments.out, written.error()).message +
@@ -109,8 +119,11 @@ void add_export_command(CLI::App& app, int& exit_code) {
       ->take_all()
       ->allow_extra_args(false);
   command->add_flag("--jsonl", arguments->jsonl,
-                    "one JSON object a line: the default, and the only format");
-  command->add_option("--out", arguments->out, "file to write; default standard output")
+                    "one JSON object a line: the default, but for an --out that ends in .nvblx");
+  command
+      ->add_option("--out", arguments->out,
+                   "file to write; default standard output. Of an nvblox map, FILE.nvblx is a map "
+                   "that nvblox loads")
       ->type_name("FILE");
   add_examples(*command, {"zonepack export map --out map.jsonl",
                           "zonepack export map --zone L1 --zone H1 | head -n 1"});

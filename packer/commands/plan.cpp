@@ -173,7 +173,7 @@ void add_plan_command(CLI::App& app, int& exit_code) {
       add_size_option(*command, "--budget", arguments->budget, "show what this budget allows");
   CLI::Option* const payload =
       add_payload_option(*command, "--payload", arguments->payload,
-                         "what to load besides the core; default features,scan,grid");
+                         "what to load besides the core; default features,scan,grid,blocks");
   command->add_option("--pin", arguments->pins, "a zone that is always held; repeatable")
       ->type_name("ZONE")
       ->take_all()

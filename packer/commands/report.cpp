@@ -132,7 +132,7 @@ void add_report_command(CLI::App& app, int& exit_code) {
   command->add_option("DIR", options->folder, "folder of the map")->required();
   add_report_option(*command, options->out, "file to write: .html, .png or .svg")->required();
   add_payload_option(*command, "--payload", options->payload,
-                     "what to count besides the core; default features,scan,grid");
+                     "what to count besides the core; default features,scan,grid,blocks");
   add_source_options(*command, options->source,
                      "take the occupancy grid from this map instead of the packs");
   add_examples(*command, {"zonepack report map --out map.html",

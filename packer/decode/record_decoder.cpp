@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "runtime/pack_format/block_index.hpp"
+
 namespace zonepack::packer {
 namespace {
 
@@ -231,6 +233,44 @@ class SignatureDecoder {
         if (table.ordinal() >= record_.links.size()) fail("user data of a link that is not there");
         record_.links[table.ordinal()].user_data = matrix_of(table);
         return;
+      case Part::BlockLayers:
+        blocks().layers_info = blob_of(table);
+        return;
+      case Part::TsdfBlocks:
+      case Part::ColorBlocks:
+      case Part::OccupancyBlocks:
+      case Part::EsdfBlocks:
+        decode_blocks(table, *voxel_layer_of(table.part()));
+        return;
+    }
+  }
+
+  BlockCube& blocks() {
+    if (!record_.blocks) record_.blocks.emplace();
+    return *record_.blocks;
+  }
+
+  // Places and plane counts were checked when the zone's index of blocks was made.
+  void decode_blocks(const TableView& table, VoxelLayer layer) {
+    BlockCube& cube = blocks();
+    for (std::size_t i = 0; i < 3; ++i) {
+      cube.index[i] = read<std::int32_t>(info_of(table), 4 * i);
+    }
+    BlockLayer& out = cube.layers[static_cast<std::size_t>(layer)];
+    const std::uint32_t planes = planes_of(layer);
+    for (const RecordView& record : table.records()) {
+      const ColumnView places = record.column(Field::Place), rows = record.column(Field::SourceRow);
+      const ColumnView voxels = record.column(Field::Voxels);
+      for (std::uint32_t i = 0; i < record.rows(); ++i) {
+        out.place.push_back(static_cast<std::uint16_t>(places.bits_at(i)));
+        out.row.push_back(rows.bits_at(i));
+        const std::size_t at = out.voxels.size();
+        out.voxels.resize(at + bytes_of_block(planes));
+        if (!copy_block(block_at(voxels.bytes(), record.rows(), i), planes,
+                        std::span(out.voxels).subspan(at))) {
+          fail("a block of voxels is not whole");
+        }
+      }
     }
   }
 

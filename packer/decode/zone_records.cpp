@@ -57,6 +57,8 @@ bool ZoneRecords::next(SignatureRecord& into, std::uint32_t* ordinal) {
   if (ordinal != nullptr) *ordinal = next_;
   try {
     into = decode_record(decoded_->view(), next_++);
+    if (into.blocks && into.blocks->layers_info.empty()) into.blocks->layers_info = layers_info_;
+    if (into.blocks) layers_info_ = into.blocks->layers_info;
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(path_ + ": " + error.what() + "; build the map again");
   }

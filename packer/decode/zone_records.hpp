@@ -20,7 +20,8 @@ class ZoneRecords {
   ZoneRecords(const MapReader& map, const fb::Zone& zone, PayloadMask wanted = kEveryPayload,
               ByteCount window_bytes = kWindowBytes);
 
-  // False at the end; `ordinal` receives the signature's place in the zone.
+  // False at the end; each signature with blocks says what their layers are; `ordinal` receives the
+  // signature's place in the zone.
   bool next(SignatureRecord& into, std::uint32_t* ordinal = nullptr);
 
  private:
@@ -33,6 +34,7 @@ class ZoneRecords {
   std::vector<OrdinalRange> windows_;
   std::size_t next_window_ = 0;
   std::uint32_t next_ = 0;
+  Bytes layers_info_;  // of blocks; a pack has it once
 };
 
 }  // namespace zonepack::packer

@@ -49,19 +49,21 @@ std::uint64_t BulkChunkBuilder::size_with(const std::vector<EncodedColumn>& colu
 BulkChunkBuilder::Added BulkChunkBuilder::add(const SourceTable& table, std::uint32_t first,
                                               std::uint64_t capacity, LatticeEncoder& lattice) {
   const std::uint32_t all = table.rows - first;
-  std::vector<EncodedColumn> columns = table.encode(first, all, lattice);
+  std::uint64_t rows = table.rows_within(first, capacity);
+  std::vector<EncodedColumn> columns =
+      table.encode(first, static_cast<std::uint32_t>(rows), lattice);
   std::uint64_t size = size_with(columns);
-  if (size <= capacity) {
+  if (size <= capacity && rows == all) {
     append(table, first, all, columns);
     return {all, true};
   }
   const std::uint64_t used = size_with(1, columns.size(), 0);
-  if (all == 0 || used >= capacity || (!empty() && capacity - used < kWorthCutting)) return {};
-  std::uint64_t rows = all;
+  const std::uint64_t worth_cutting = table.of_blocks() ? 0 : kWorthCutting;
+  if (all == 0 || used >= capacity || (!empty() && capacity - used < worth_cutting)) return {};
   while (size > capacity && rows > 0) {
     const std::uint64_t proportional =
         rows * (capacity - used) / std::max<std::uint64_t>(size - used, 1);
-    rows = std::min(proportional, rows - 1);
+    rows = table.of_blocks() ? rows - 1 : std::min(proportional, rows - 1);
     if (rows == 0) break;
     columns = table.encode(first, static_cast<std::uint32_t>(rows), lattice);
     size = size_with(columns);

@@ -6,34 +6,11 @@
 #include <cmath>
 #include <cstring>
 
+#include "packer/encode/bit_writer.hpp"
 #include "runtime/pack_format/column.hpp"
 
 namespace zonepack::packer {
 namespace {
-
-class BitWriter {
- public:
-  explicit BitWriter(Bytes& out) : out_(out) {}
-  void put(std::uint32_t value, unsigned width) {
-    word_ |= std::uint64_t{value} << filled_;
-    filled_ += width;
-    while (filled_ >= 8) {
-      out_.push_back(static_cast<std::byte>(word_ & 0xFF));
-      word_ >>= 8;
-      filled_ -= 8;
-    }
-  }
-  void finish() {
-    if (filled_ > 0) out_.push_back(static_cast<std::byte>(word_ & 0xFF));
-    word_ = 0;
-    filled_ = 0;
-  }
-
- private:
-  Bytes& out_;
-  std::uint64_t word_ = 0;
-  unsigned filled_ = 0;
-};
 
 unsigned width_of(std::uint32_t range) { return static_cast<unsigned>(std::bit_width(range)); }
 

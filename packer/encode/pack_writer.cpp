@@ -33,14 +33,14 @@ AtomicFile open_part(const std::filesystem::path& folder) {
 
 }  // namespace
 
-PackWriter::PackWriter(const std::filesystem::path& folder, std::string zone)
+PackWriter::PackWriter(const std::filesystem::path& folder, std::string zone, std::uint16_t minor)
     : folder_(folder),
       zone_(std::move(zone)),
+      header_{.minor = minor},
       file_(open_part(folder)),
       compressed_(static_cast<std::size_t>(LZ4_compressBound(static_cast<int>(kSlotBytes)))),
       lz4_state_(static_cast<std::size_t>(LZ4_sizeofStateHC())) {
-  const PackHeader header;
-  write(std::as_bytes(std::span(&header, 1)));
+  write(std::as_bytes(std::span(&header_, 1)));
 }
 
 void PackWriter::add(SignatureRecord& record, float x, float y) {
@@ -49,6 +49,10 @@ void PackWriter::add(SignatureRecord& record, float x, float y) {
   summary_.features += record.features.count;
   positions_.emplace_back(x, y);
   summary_.signature_bytes.push_back(0);
+  if (record.blocks) {
+    if (has_layers_) record.blocks->layers_info.clear();
+    has_layers_ = has_layers_ || !record.blocks->layers_info.empty();
+  }
   for (SourceTable& table : tables_of(record, ordinal)) {
     const fb::PayloadKind kind = kind_of(table.part);
     Queue& queue = queues_[static_cast<std::size_t>(kind)];
@@ -184,7 +188,8 @@ PackSummary PackWriter::finish(PayloadMask packed) {
   PackTail tail;
   tail.index_offset = offset_;
   tail.index_size = index.size();
-  tail.digest = pack_digest(PackHeader(), index, tail);
+  tail.minor = header_.minor;
+  tail.digest = pack_digest(header_, index, tail);
   write(index);
   write(std::as_bytes(std::span(&tail, 1)));
 

@@ -39,7 +39,8 @@ struct PackSummary {
 // Memory: the index, and at most a slot or two of rows of each payload kind.
 class PackWriter {
  public:
-  PackWriter(const std::filesystem::path& folder, std::string zone);
+  // `minor`: kPackMinorOfBlocks where signatures may hold blocks of voxels.
+  PackWriter(const std::filesystem::path& folder, std::string zone, std::uint16_t minor = 0);
 
   // Consumes `record`. x, y: position of its base in the map frame, metres.
   void add(SignatureRecord& record, float x, float y);
@@ -68,12 +69,14 @@ class PackWriter {
 
   std::filesystem::path folder_;
   std::string zone_;
+  PackHeader header_;
   AtomicFile file_;
   std::uint64_t offset_ = 0;
   std::vector<fb::ChunkEntry> entries_;
   std::vector<CoreRecord> core_;
   std::array<Queue, kPayloadKinds> queues_;
   LatticeEncoder lattice_;
+  bool has_layers_ = false;  // what the layers of blocks are is written, once a pack
   std::vector<std::pair<float, float>> positions_;
   std::vector<char> compressed_;
   std::vector<char> lz4_state_;

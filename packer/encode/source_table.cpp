@@ -4,6 +4,9 @@
 #include <cstring>
 #include <utility>
 
+#include "packer/encode/voxel_encoder.hpp"
+#include "runtime/pack_format/block_index.hpp"
+
 namespace zonepack::packer {
 namespace {
 
@@ -111,6 +114,39 @@ SourceTable scan_table(std::uint32_t signature, Scan scan) {
   return table;
 }
 
+SourceTable blocks_table(std::uint32_t signature, VoxelLayer layer, const BlockCube& cube) {
+  const BlockLayer& blocks = cube.layers[static_cast<std::size_t>(layer)];
+  const std::uint32_t planes = planes_of(layer);
+  const std::uint32_t bytes = bytes_of_block(planes);
+  SourceTable table{
+      signature, part_of(layer), 0, static_cast<std::uint32_t>(blocks.place.size()), {}, {}, 0, {}};
+  table.attributes.push_back(
+      encode_raw(fb::Field::Info, std::as_bytes(std::span(cube.index)), sizeof cube.index));
+  const std::vector<std::uint32_t> places(blocks.place.begin(), blocks.place.end());
+  table.columns.push_back(values_column(fb::Field::Place, places));
+  table.columns.push_back(values_column(fb::Field::SourceRow, blocks.row));
+  SourceColumn voxels{fb::Field::Voxels, 0, false, {}, {}, planes};
+  for (std::size_t i = 0; i < blocks.place.size(); ++i) {
+    encode_block(std::span(blocks.voxels).subspan(i * bytes, bytes), planes, voxels.data);
+    voxels.ends.push_back(static_cast<std::uint32_t>(voxels.data.size()));
+  }
+  table.columns.push_back(std::move(voxels));
+  return table;
+}
+
+// Rows [first, first + count) of encoded blocks: where each ends, then the blocks. Beyond what a
+// slot holds, ends wrap; such a column is never stored.
+EncodedColumn encode_blocks(const SourceColumn& column, std::uint32_t first, std::uint32_t count) {
+  EncodedColumn out{column.field, fb::ColumnCodec::Planes, 0, column.planes, 0, {}};
+  const std::uint32_t begin = first == 0 ? 0 : column.ends[first - 1];
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    append(out.bytes, static_cast<std::uint16_t>(column.ends[i] - begin));
+  }
+  const std::uint32_t end = count == 0 ? begin : column.ends[first + count - 1];
+  out.bytes.insert(out.bytes.end(), column.data.begin() + begin, column.data.begin() + end);
+  return out;
+}
+
 }  // namespace
 
 std::vector<EncodedColumn> SourceTable::encode(std::uint32_t first, std::uint32_t count,
@@ -118,6 +154,10 @@ std::vector<EncodedColumn> SourceTable::encode(std::uint32_t first, std::uint32_
   std::vector<EncodedColumn> out;
   if (first == 0) out = attributes;
   for (const SourceColumn& column : columns) {
+    if (column.planes != 0) {
+      out.push_back(encode_blocks(column, first, count));
+      continue;
+    }
     const auto rows_bytes =
         std::span<const std::byte>(column.data)
             .subspan(std::size_t{first} * column.row_bytes, std::size_t{count} * column.row_bytes);
@@ -151,6 +191,15 @@ std::vector<EncodedColumn> SourceTable::encode(std::uint32_t first, std::uint32_
     out.push_back(encode_raw(column.field, rows_bytes, column.row_bytes));
   }
   return out;
+}
+
+std::uint32_t SourceTable::rows_within(std::uint32_t first, std::uint64_t bytes) const {
+  if (!of_blocks()) return rows - first;
+  const std::vector<std::uint32_t>& ends = columns.back().ends;
+  const std::uint64_t begin = first == 0 ? 0 : ends[first - 1];
+  std::uint32_t count = 0;
+  while (first + count < rows && ends[first + count] - begin + 2 * (count + 1) <= bytes) ++count;
+  return count;
 }
 
 std::vector<SourceTable> tables_of(SignatureRecord& record, std::uint32_t ordinal) {
@@ -207,6 +256,14 @@ std::vector<SourceTable> tables_of(SignatureRecord& record, std::uint32_t ordina
   if (record.user_data) {
     tables.push_back(
         matrix_table(ordinal, fb::Part::UserData, std::move(*record.user_data), false));
+  }
+  if (record.blocks) {
+    add_bytes(fb::Part::BlockLayers, record.blocks->layers_info);
+    for (std::uint32_t i = 0; i < kVoxelLayers; ++i) {
+      if (record.blocks->layers[i].place.empty()) continue;
+      tables.push_back(blocks_table(ordinal, static_cast<VoxelLayer>(i), *record.blocks));
+    }
+    record.blocks.reset();
   }
   for (std::size_t i = 0; i < record.links.size(); ++i) {
     if (!record.links[i].user_data) continue;

@@ -17,6 +17,9 @@ struct SourceColumn {
   std::uint32_t row_bytes = 0;
   bool values = false;  // 32-bit values, stored in their smallest form; else rows of bytes
   Bytes data;
+  // Of encoded blocks of voxels, which differ in length: where each ends in `data`. Else empty.
+  std::vector<std::uint32_t> ends{};
+  std::uint32_t planes = 0;  // of such a block
 };
 
 // One table of one signature, to be stored in chunks whole or in pieces of rows.
@@ -33,6 +36,11 @@ struct SourceTable {
   // Rows [first, first + count) in their smallest form; with the attributes when first is 0.
   std::vector<EncodedColumn> encode(std::uint32_t first, std::uint32_t count,
                                     LatticeEncoder& lattice) const;
+
+  // Of the rows from `first` on, the most that can take at most so many bytes; where rows differ in
+  // length and are kept as they are, this is known without encoding them.
+  std::uint32_t rows_within(std::uint32_t first, std::uint64_t bytes) const;
+  bool of_blocks() const { return !columns.empty() && columns.back().planes != 0; }
 };
 
 // All tables of a signature. Moves the large members out of `record`.

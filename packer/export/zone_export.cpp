@@ -2,6 +2,7 @@
 #include "packer/export/zone_export.hpp"
 
 #include "packer/decode/zone_records.hpp"
+#include "packer/export/block_json.hpp"
 #include "packer/export/cloud_json.hpp"
 #include "packer/export/keyframe_json.hpp"
 #include "packer/export/signature_json.hpp"
@@ -13,6 +14,7 @@ namespace {
 auto writer_of(const fb::Manifest& manifest) {
   const std::string kind = flatbuffers::GetString(manifest.provenance()->source_kind());
   if (kind == "stella") return &write_keyframe;
+  if (kind == "nvblox") return &write_blocks;
   return kind == "pcd" || kind == "autoware" || kind == "glim" ? &write_tile : &write_signature;
 }
 

@@ -57,11 +57,14 @@ struct MapOutline {
   std::string detector;
   std::optional<OptimisedMap> optimised_map;
 
+  bool is_blocks = false;  // its signatures hold blocks of voxels, and nothing else
+
   // For the size report: what the source itself spends on the nodes above.
   std::uint64_t feature_count = 0;
   std::uint64_t feature_bytes = 0;  // keypoints, points and descriptors
   std::uint64_t scan_bytes = 0;     // zlib blobs as stored
   std::uint64_t grid_bytes = 0;     // ground, obstacle and empty cells
+  std::uint64_t block_bytes = 0;    // blocks of voxels as stored
 
   const NodeOutline* find(std::int32_t id) const noexcept;
   std::size_t unlinked() const noexcept;

@@ -67,6 +67,20 @@ struct Grid {
   std::optional<Matrix> ground, obstacle, empty;
 };
 
+// The blocks of one layer in a cube: 8 x 8 x 8 voxels each, bit for bit as nvblox stores them.
+struct BlockLayer {
+  std::vector<std::uint16_t> place;  // in the cube, ascending (place_in_cube of the pack format)
+  std::vector<std::uint32_t> row;    // in the source's table
+  Bytes voxels;                      // of one block after the other
+};
+
+// Blocks of voxels that lie in a cube of 8 x 8 x 8 blocks, or in one zone's part of it.
+struct BlockCube {
+  std::array<std::int32_t, 3> index{};  // the cube's lower corner is index * 8 * block size
+  Bytes layers_info;  // block size, tables and metadata of the source (FORMAT.md: BlockLayers)
+  std::array<BlockLayer, 4> layers;  // TSDF, colour, occupancy, ESDF
+};
+
 // RTAB-Map's numbers of links, of those that others have too.
 inline constexpr std::int32_t kNeighbourLink = 0, kGlobalClosureLink = 1;
 
@@ -81,7 +95,8 @@ struct Link {
 // Which parts of a signature are wanted, and which a pack holds. The core (ids, poses, links,
 // calibration) is always carried.
 struct PayloadSet {
-  bool features = true, scan = true, grid = true, image = true, depth = true, userdata = true;
+  bool features = true, scan = true, grid = true, image = true, depth = true, userdata = true,
+       blocks = true;
 };
 
 struct SignatureRecord {
@@ -102,6 +117,7 @@ struct SignatureRecord {
   std::optional<Grid> grid;
   Bytes image, depth, depth_confidence;  // as stored; empty when NULL
   std::optional<Matrix> user_data;
+  std::optional<BlockCube> blocks;
   std::vector<Link> links;  // rows with from_id = id, sorted by (type, to)
 };
 

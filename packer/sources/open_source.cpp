@@ -8,13 +8,15 @@
 
 #include "packer/sources/cloud/cloud_kinds.hpp"
 #include "packer/sources/foreign_map.hpp"
+#include "packer/sources/nvblox/nvblox_kind.hpp"
 #include "packer/sources/rtabmap/rtabmap_kind.hpp"
 #include "packer/sources/stella/stella_kind.hpp"
 
 namespace zonepack::packer {
 namespace {
 
-constexpr std::array kKinds = {&kRtabmapKind, &kStellaKind, &kPcdKind, &kAutowareKind, &kGlimKind};
+constexpr std::array kKinds = {&kRtabmapKind,  &kStellaKind, &kPcdKind,
+                               &kAutowareKind, &kGlimKind,   &kNvbloxKind};
 
 void refuse_placement(const SourceKind& kind, const SourceOptions& options) {
   const std::string option = options.placement.first_option();

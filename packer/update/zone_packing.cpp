@@ -98,7 +98,8 @@ bool ZonePacking::read_newcomer(MapSource& database, const Newcomer& newcomer,
 void ZonePacking::pack_zone(MapSource* database, MapFolder& folder, std::uint32_t zone,
                             std::vector<Damage>& damages) {
   const ZoneContents::Content& content = zones_.contents()[zone];
-  PackWriter writer(folder.path(), zones_.plan().zones[zone].name);
+  PackWriter writer(folder.path(), zones_.plan().zones[zone].name,
+                    pack_minor(manifest_.payload_mask()));
   const auto add = [&](SignatureRecord& record, const fb::Node& node) {
     ++out_.sessions[zone][record.map_id];
     for (const Link& link : record.links) out_.links[zone].emplace_back(record.id, link.to);

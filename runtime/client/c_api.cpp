@@ -243,3 +243,44 @@ size_t zp_blob(const zp_zone* zone, uint32_t index, zp_blob_kind kind,
   });
   return sum;
 }
+
+namespace {
+
+void describe(const zonepack::BlockView& block, zp_block* out) {
+  *out = {block.position().x, block.position().y, block.position().z, 0};
+  for (std::uint32_t layer = 0; layer < zonepack::kVoxelLayers; ++layer) {
+    if (block.has(static_cast<zonepack::VoxelLayer>(layer))) out->layers |= 1U << layer;
+  }
+}
+
+}  // namespace
+
+double zp_block_size(const zp_zone* zone) { return zone->signatures.blocks().block_size_m(); }
+
+uint32_t zp_block_count(const zp_zone* zone) { return zone->signatures.blocks().size(); }
+
+int zp_get_block(const zp_zone* zone, uint32_t index, zp_block* out) {
+  *out = {};
+  const zonepack::BlocksView blocks = zone->signatures.blocks();
+  if (index >= blocks.size()) return 0;
+  describe(blocks[index], out);
+  return 1;
+}
+
+int zp_find_block(const zp_zone* zone, int32_t x, int32_t y, int32_t z, zp_block* out) {
+  *out = {};
+  const auto block = zone->signatures.blocks().find(x, y, z);
+  if (!block) return 0;
+  describe(*block, out);
+  return 1;
+}
+
+int zp_copy_block(const zp_zone* zone, int32_t x, int32_t y, int32_t z, zp_layer layer, void* out,
+                  size_t bytes) {
+  const auto block = zone->signatures.blocks().find(x, y, z);
+  if (!block || layer > ZP_ESDF) return 0;
+  return block->copy(static_cast<zonepack::VoxelLayer>(layer),
+                     {static_cast<std::byte*>(out), bytes})
+             ? 1
+             : 0;
+}

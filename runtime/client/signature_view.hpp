@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "runtime/client/block_view.hpp"
 #include "runtime/client/table_rows.hpp"
 #include "runtime/pack_format/ids.hpp"
 #include "runtime/pack_format/zone_view.hpp"
@@ -157,6 +158,8 @@ class ZoneSignatures {
   SignatureView operator[](std::uint32_t index) const noexcept { return {*zone_, index}; }
   // Takes log2(size()) steps.
   std::optional<SignatureView> find(SignatureId id) const noexcept;
+  // Blocks of voxels, of maps that hold them (nvblox).
+  BlocksView blocks() const noexcept { return BlocksView(*zone_); }
   const ZoneView& zone() const noexcept { return *zone_; }
 
  private:

@@ -125,6 +125,29 @@ typedef enum { ZP_IMAGE, ZP_DEPTH } zp_blob_kind;
 size_t zp_blob(const zp_zone* zone, uint32_t index, zp_blob_kind kind,
                void (*fn)(const uint8_t* bytes, size_t count, void* user), void* user);
 
+/* ---- blocks of voxels (maps of nvblox) ---- */
+
+typedef struct {
+  int32_t x, y, z;  /* its lower corner is index x block size, in the map frame */
+  uint32_t layers;  /* bit 0 TSDF, 1 colour, 2 occupancy, 3 ESDF */
+} zp_block;
+
+typedef enum { ZP_TSDF, ZP_COLOR, ZP_OCCUPANCY, ZP_ESDF } zp_layer;
+
+/* Metres; 0 when the zone holds no blocks. */
+double zp_block_size(const zp_zone* zone);
+uint32_t zp_block_count(const zp_zone* zone);
+/* 1 when there is one, else 0. Any order that stays while the zone is loaded. */
+int zp_get_block(const zp_zone* zone, uint32_t index, zp_block* block);
+/* By position, in a constant number of steps; 1 when the zone has it, else 0. */
+int zp_find_block(const zp_zone* zone, int32_t x, int32_t y, int32_t z, zp_block* block);
+/* Copies 512 voxels [x][y][z], z fastest, as nvblox has them: TSDF {float distance, weight}, colour
+ * {uint8 r, g, b, a; float weight}, occupancy {float log odds}, ESDF {float squared distance; int32
+ * parent[3]; uint8 inside, observed, site, 0}. `bytes` must be what they take: 4096, 4096, 2048,
+ * 10240. 1 when it was copied, else 0. */
+int zp_copy_block(const zp_zone* zone, int32_t x, int32_t y, int32_t z, zp_layer layer, void* out,
+                  size_t bytes);
+
 #ifdef __cplusplus
 }
 #endif

@@ -44,6 +44,8 @@ const char* to_string(fb::PayloadKind kind) noexcept {
       return "depth";
     case fb::PayloadKind::UserData:
       return "userdata";
+    case fb::PayloadKind::Blocks:
+      return "blocks";
   }
   return nullptr;
 }
@@ -65,6 +67,12 @@ fb::PayloadKind kind_of(fb::Part part) noexcept {
     case fb::Part::Depth:
     case fb::Part::DepthConfidence:
       return fb::PayloadKind::Depth;
+    case fb::Part::BlockLayers:
+    case fb::Part::TsdfBlocks:
+    case fb::Part::ColorBlocks:
+    case fb::Part::OccupancyBlocks:
+    case fb::Part::EsdfBlocks:
+      return fb::PayloadKind::Blocks;
     case fb::Part::UserData:
     case fb::Part::LinkUserData:
       break;

@@ -12,7 +12,7 @@
 
 namespace zonepack {
 
-inline constexpr std::uint32_t kPayloadKinds = 7;
+inline constexpr std::uint32_t kPayloadKinds = 8;
 
 // "core", "features", "scan" …; the words of --payload. Null for an unknown kind.
 const char* to_string(fb::PayloadKind kind) noexcept;
@@ -24,10 +24,10 @@ constexpr PayloadMask mask_of(fb::PayloadKind kind) noexcept {
 }
 inline constexpr PayloadMask kCoreOnly = 1;
 inline constexpr PayloadMask kEveryPayload = (1u << kPayloadKinds) - 1;
-// What a localizer needs; the default of memory.payload and of plan.
-inline constexpr PayloadMask kDefaultPayload = kCoreOnly | mask_of(fb::PayloadKind::Features) |
-                                               mask_of(fb::PayloadKind::Scan) |
-                                               mask_of(fb::PayloadKind::Grid);
+// What a robot needs of any kind of map; the default of memory.payload and of plan.
+inline constexpr PayloadMask kDefaultPayload =
+    kCoreOnly | mask_of(fb::PayloadKind::Features) | mask_of(fb::PayloadKind::Scan) |
+    mask_of(fb::PayloadKind::Grid) | mask_of(fb::PayloadKind::Blocks);
 
 // The kind whose payload a table of this part belongs to.
 fb::PayloadKind kind_of(fb::Part part) noexcept;

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "runtime/pack_format/voxel_block.hpp"
+
 namespace zonepack {
 namespace {
 
@@ -56,9 +58,10 @@ bool lattice_is_sound(ByteSpan bytes, std::uint32_t rows) noexcept {
 bool unused_is_zero(const ColumnView& column) noexcept {
   const auto codec = column.codec();
   const bool packed = codec == fb::ColumnCodec::Packed || codec == fb::ColumnCodec::Scaled;
-  const bool has_param = codec == fb::ColumnCodec::Raw || codec == fb::ColumnCodec::Scaled;
+  const bool has_param = codec == fb::ColumnCodec::Raw || codec == fb::ColumnCodec::Scaled ||
+                         codec == fb::ColumnCodec::Planes;
   const bool has_base = codec != fb::ColumnCodec::Raw && codec != fb::ColumnCodec::Blocks &&
-                        codec != fb::ColumnCodec::Lattice;
+                        codec != fb::ColumnCodec::Lattice && codec != fb::ColumnCodec::Planes;
   if ((!packed && column.bits() != 0) || (!has_param && column.param() != 0) ||
       (!has_base && column.base() != 0) ||
       (codec == fb::ColumnCodec::Packed && column.base() >> 32 != 0)) {
@@ -90,6 +93,8 @@ constexpr std::uint8_t codecs_of(fb::Field field) {
       return bit_of(ColumnCodec::Raw);
     case fb::Field::Row:
       return bit_of(ColumnCodec::Raw) | bit_of(ColumnCodec::Lattice) | bit_of(ColumnCodec::Subset);
+    case fb::Field::Voxels:
+      return bit_of(ColumnCodec::Planes);
     default:
       return bit_of(ColumnCodec::Raw) | bit_of(ColumnCodec::Constant) |
              bit_of(ColumnCodec::Packed) | bit_of(ColumnCodec::Scaled) |
@@ -134,6 +139,7 @@ bool codec_fits(const fb::Column& column) noexcept {
   const ByteSpan own{bytes + column.offset(), size};
   if (codec == fb::ColumnCodec::Blocks) return blocks_are_sound(own, rows);
   if (codec == fb::ColumnCodec::Lattice) return lattice_is_sound(own, rows);
+  if (codec == fb::ColumnCodec::Planes) return planes_are_sound(own, rows, column.param());
   const std::uint64_t span = column.base() >> 32;
   return codec == fb::ColumnCodec::Subset && span >= rows && size == (span + 7) / 8;
 }
@@ -170,6 +176,7 @@ std::uint32_t ColumnView::bits_at(std::uint32_t row) const noexcept {
     }
     case fb::ColumnCodec::Lattice:
     case fb::ColumnCodec::Subset:
+    case fb::ColumnCodec::Planes:
       break;
   }
   return 0;
@@ -201,6 +208,8 @@ bool column_is_exact(const ColumnView& column) noexcept {
       return ones(column.bytes().subspan(sizeof(LatticeHeader))) == column.rows();
     case fb::ColumnCodec::Subset:
       return ones(column.bytes()) == column.rows();
+    case fb::ColumnCodec::Planes:
+      return planes_are_exact(column.bytes(), column.rows(), column.param());
     default:
       return true;
   }

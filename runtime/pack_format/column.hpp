@@ -47,7 +47,8 @@ constexpr std::uint32_t float_from_ordered(std::uint32_t ordered) noexcept {
 }
 
 constexpr bool is_integer(fb::Field field) noexcept {
-  return field == fb::Field::WordId || field == fb::Field::Octave;
+  return field == fb::Field::WordId || field == fb::Field::Octave || field == fb::Field::Place ||
+         field == fb::Field::SourceRow;
 }
 
 // Attributes belong to the whole table instead of its rows: one row in the first record.

@@ -82,7 +82,7 @@ inline constexpr Holding kPlaced{"readers place chunks themselves, never more th
 inline constexpr Holding kFewerThanChunks{"each slot holds a chunk, so chunks reach their limit"};
 inline constexpr Holding kShortSource{"no value of a source is longer than 257 MiB"};
 inline constexpr Holding kNamedByPacker{"the packer makes the name: a zone's and 21 bytes"};
-inline constexpr Holding kKnownKinds{"the packer knows six kinds besides the core"};
+inline constexpr Holding kKnownKinds{"the packer knows seven kinds besides the core"};
 inline constexpr Holding kInsideChunk{"a reader only hands it on, and its chunk bounds it"};
 inline constexpr Holding kChunksBoundIt{"the most chunks of a pack take 289 MiB of index"};
 inline constexpr const char* kSplit = "split the zone with --max-zone-bytes";

@@ -95,6 +95,9 @@ Result<ZoneView> ZoneView::make(std::span<const fb::CoreChunk* const> core_chunk
   while (view.first_table_.size() <= view.core_.size()) {
     view.first_table_.push_back(view.tables_.size());
   }
+  Result<BlockIndex> blocks = BlockIndex::make(view.records_);
+  if (!blocks) return blocks.error();
+  view.blocks_ = std::move(*blocks);
   return view;
 }
 

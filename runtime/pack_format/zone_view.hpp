@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "platform/base/result.hpp"
+#include "runtime/pack_format/block_index.hpp"
 #include "runtime/pack_format/chunk_view.hpp"
 
 namespace zonepack {
@@ -49,8 +50,8 @@ class TableView {
 class ZoneView {
  public:
   // Refuses tables whose records leave out, repeat or contradict rows (kMismatch; detail: the
-  // ordinal), signatures without a core record, and ids out of order. With a range, the view holds
-  // only its signatures, and the chunks may lack parts of others.
+  // ordinal), signatures without a core record, ids out of order, and blocks that are there twice.
+  // With a range, the view holds only its signatures, and the chunks may lack parts of others.
   static Result<ZoneView> make(std::span<const ChunkRef> chunks, OrdinalRange range = {});
 
   // The same from checked core chunks and the records of all other chunks.
@@ -78,12 +79,16 @@ class ZoneView {
   }
   const TableView* table(std::uint32_t ordinal, fb::Part part) const noexcept;
 
+  // The zone's blocks of voxels by their index; empty for maps without any.
+  const BlockIndex& blocks() const noexcept { return blocks_; }
+
  private:
   std::uint32_t first_ = 0;  // ordinal of core_[0]
   std::vector<Core> core_;
   std::vector<RecordView> records_;  // by signature, part, ordinal, first row
   std::vector<TableView> tables_;
   std::vector<std::size_t> first_table_;  // size() + 1
+  BlockIndex blocks_;
 };
 
 }  // namespace zonepack

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/fuzz/reference_checks.hpp"
 
+#include <bit>
 #include <cstring>
 
 #include "runtime/pack_format/chunk_view.hpp"
@@ -51,6 +52,8 @@ bool codec_fits(const fb::Column& column) {
       return codec == Codec::Constant || codec == Codec::Raw;
     case fb::Field::Descriptor:
       return codec == Codec::Raw;
+    case fb::Field::Voxels:
+      return codec == Codec::Planes;
     case fb::Field::Row:
       return codec == Codec::Raw || codec == Codec::Lattice || codec == Codec::Subset;
     default:
@@ -82,6 +85,134 @@ bool lattice_fits(ByteSpan bytes, std::uint64_t rows) {
          bytes.size() == sizeof header + (cells + 7) / 8;
 }
 
+// A plane after the other, each by the table of FORMAT.md, "Planes".
+class PlanesReader {
+ public:
+  explicit PlanesReader(ByteSpan bytes) : bytes_(bytes) {}
+
+  bool plane() {
+    const std::size_t how = byte(), form = byte(), spread = how & 3, choice = how >> 2 & 3;
+    if (failed_ || how > 15) return false;
+    if (spread == 2) {
+      const ByteSpan starts = take(64);
+      if (failed_ || (std::to_integer<unsigned>(starts[0]) & 1) == 0) return false;
+      n_ = ones(starts, {}, 512);
+    } else if (spread == 3) {
+      if (!had_runs_) return false;
+    } else {
+      n_ = spread == 0 ? 512 : 64;
+    }
+    had_runs_ = spread >= 2;
+    if (choice == 0) m_ = n_;
+    if (choice == 3) {
+      if (constants_ == 0 || chosen_of_ != n_) return false;
+      take(4 * constants_);
+    } else {
+      constants_ = choice == 0 ? 0 : choice == 1 ? 1 : 3;
+      take(4 * constants_);
+      if (choice != 0) {
+        const ByteSpan low = take((n_ + 7) / 8);
+        const ByteSpan high = choice == 2 ? take((n_ + 7) / 8) : ByteSpan();
+        if (failed_) return false;
+        m_chosen_ = ones(low, high, n_);
+      }
+      chosen_of_ = n_;
+    }
+    if (choice != 0) m_ = m_chosen_;
+    const std::size_t width = width_of(form);
+    if (failed_ || width > 32) return false;
+    take((m_ * width + 7) / 8);
+    return !failed_;
+  }
+  bool at_end() const { return bytes_.empty(); }
+
+ private:
+  ByteSpan take(std::size_t count) {
+    failed_ = failed_ || bytes_.size() < count;
+    if (failed_) return {};
+    const ByteSpan taken = bytes_.first(count);
+    bytes_ = bytes_.subspan(count);
+    return taken;
+  }
+  std::size_t byte() {
+    const ByteSpan one = take(1);
+    return one.empty() ? 0 : std::to_integer<std::size_t>(one[0]);
+  }
+  static std::size_t ones(ByteSpan bits, ByteSpan with, std::size_t count) {
+    std::size_t sum = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto bit = [i](ByteSpan b) { return std::to_integer<unsigned>(b[i / 8]) >> i % 8 & 1; };
+      sum += bit(bits) != 0 && (with.empty() || bit(with) != 0);
+    }
+    return sum;
+  }
+  static std::size_t bits_of(std::size_t count) {
+    return static_cast<std::size_t>(std::bit_width(count - 1));
+  }
+  // Of a value in the list; over 32 where the form is none.
+  std::size_t width_of(std::size_t form) {
+    constexpr std::size_t kNone = 99;
+    switch (form) {
+      case 0:
+        take(4);
+        return 0;
+      case 1:
+        return 32;
+      case 2:
+      case 3: {
+        const std::size_t first = byte(), width = byte();
+        take(4);
+        return form == 2 ? (first <= 2 ? width : kNone)
+                         : (first <= 15 && width <= 25 ? width : kNone);
+      }
+      case 4: {
+        const std::size_t count = byte() + 1;
+        take(4 * count);
+        return bits_of(count);
+      }
+      case 5: {
+        const std::size_t count = byte() + 1, zeros = byte();
+        if (count > 16 || zeros > 23) return kNone;
+        take(2 * count);
+        return 23 - zeros + bits_of(count);
+      }
+      case 6: {
+        std::size_t width = 0;
+        for (int i = 0; i < 4; ++i) {
+          byte();
+          const std::size_t bits = byte();
+          width += bits <= 8 ? bits : kNone;
+        }
+        return width;
+      }
+      default:
+        return kNone;
+    }
+  }
+
+  ByteSpan bytes_;
+  bool failed_ = false, had_runs_ = false;
+  std::size_t n_ = 0, m_ = 0, constants_ = 0, chosen_of_ = 0, m_chosen_ = 0;
+};
+
+bool planes_fit(ByteSpan bytes, std::uint64_t rows, std::uint32_t planes) {
+  if (planes < 1 || planes > 5 || rows * 2 > bytes.size()) return false;
+  const ByteSpan blocks = bytes.subspan(static_cast<std::size_t>(rows) * 2);
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < rows; ++i) {
+    std::uint16_t end;
+    std::memcpy(&end, bytes.data() + 2 * i, sizeof end);
+    if (end < begin || end > blocks.size()) return false;
+    PlanesReader reader(blocks.subspan(begin, end - begin));
+    for (std::uint32_t p = 0; p < planes; ++p) {
+      if (!reader.plane()) return false;
+    }
+    if (!reader.at_end()) return false;
+    begin = end;
+  }
+  return begin == blocks.size();
+}
+
 bool column_fits(const fb::Column& column, ByteSpan bytes, std::uint64_t rows) {
   if (column.field() > fb::Field::MAX || !codec_fits(column)) return false;
   const std::uint64_t end = std::uint64_t{column.offset()} + column.size();
@@ -103,6 +234,8 @@ bool column_fits(const fb::Column& column, ByteSpan bytes, std::uint64_t rows) {
       return blocks_fit(own, rows);
     case fb::ColumnCodec::Lattice:
       return lattice_fits(own, rows);
+    case fb::ColumnCodec::Planes:
+      return planes_fit(own, rows, column.param());
     case fb::ColumnCodec::Subset:
       return column.base() >> 32 >= rows && own.size() == ((column.base() >> 32) + 7) / 8;
   }

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "tests/fuzz/input_seeds.hpp"
+#include "tests/fuzz/nvblox_entries.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/support/memory_folder.hpp"
 
@@ -34,5 +35,7 @@ int main(int argc, char** argv) {
   write("pcd", inputs.pcd);
   write("recording", inputs.recordings);
   write("protocol", inputs.messages);
+  write("voxels", zonepack::fuzz::nvblox_seeds().voxels);
+  write("nvblox", zonepack::fuzz::nvblox_seeds().files);
   return 0;
 }

@@ -92,6 +92,17 @@ void compare(const std::vector<packer::Link>& a, const std::vector<packer::Link>
   }
 }
 
+void compare(const packer::BlockCube& a, const packer::BlockCube& b, Difference& d) {
+  d.note("blocks.index", a.index == b.index);
+  d.note("blocks.layers_info", a.layers_info == b.layers_info);
+  for (std::size_t i = 0; i < a.layers.size(); ++i) {
+    const std::string name = "blocks.layers[" + std::to_string(i) + "].";
+    d.note(name + "place", a.layers[i].place == b.layers[i].place);
+    d.note(name + "row", a.layers[i].row == b.layers[i].row);
+    d.note(name + "voxels", a.layers[i].voxels == b.layers[i].voxels);
+  }
+}
+
 }  // namespace
 
 std::string first_difference(const packer::SignatureRecord& a, const packer::SignatureRecord& b) {
@@ -123,6 +134,8 @@ std::string first_difference(const packer::SignatureRecord& a, const packer::Sig
   d.note("depth", a.depth == b.depth);
   d.note("depth_confidence", a.depth_confidence == b.depth_confidence);
   d.note("user_data", same(a.user_data, b.user_data));
+  d.note("blocks", a.blocks.has_value() == b.blocks.has_value());
+  if (a.blocks && b.blocks) compare(*a.blocks, *b.blocks, d);
   compare(a.links, b.links, d);
   return d.name();
 }

@@ -7,7 +7,9 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <span>
 
+#include "packer/record/block_layers.hpp"
 #include "packer/sources/rtabmap/rtabmap_blobs.hpp"
 #include "tests/support/blob_writer.hpp"
 
@@ -184,6 +186,47 @@ Bytes make_calibration(SignatureRecipe::Camera kind) {
   return bytes;
 }
 
+// Blocks at places 3 and 72 of a cube: one not observed, one of a wall in noise; colours, occupancy
+// of three values, and an ESDF of small squares.
+packer::BlockCube make_blocks(std::int32_t id) {
+  Numbers numbers(id + 1000);
+  packer::BlockCube cube;
+  cube.index = {id, -1, 0};
+  packer::BlockLayers layers;
+  layers.block_size_m = 0.5;
+  for (std::size_t i = 0; i < layers.layers.size(); ++i) {
+    const std::string name = packer::kBlockLayerNames[i];
+    layers.layers[i] = {"CREATE TABLE " + name +
+                            "_metadata (param_name TEXT, value_string TEXT, "
+                            "value_int INTEGER, value_float REAL)",
+                        "CREATE TABLE " + name + "_data (index_x, index_y, index_z, data BLOB)",
+                        {{std::string("block_size"), {}, {}, 0.5}}};
+  }
+  cube.layers_info = packer::write_block_layers(layers);
+  const auto put = [](packer::Bytes& out, auto value) {
+    const auto bytes = std::as_bytes(std::span(&value, 1));
+    out.insert(out.end(), bytes.begin(), bytes.end());
+  };
+  std::vector<float> noise = numbers.floats(512, -1, 1);
+  for (float& value : noise) value *= 0.2f;
+  cube.layers[0] = {{3, 72}, {11, 7}, packer::Bytes(4096)};
+  for (auto* layer : {&cube.layers[1], &cube.layers[2], &cube.layers[3]}) *layer = {{72}, {5}, {}};
+  for (std::uint32_t i = 0; i < 512; ++i) {
+    const bool near = i % 64 < 24;
+    put(cube.layers[0].voxels, near ? noise[i] : i < 256 ? 0.0f : 0.2f);
+    put(cube.layers[0].voxels, i < 256 && !near ? 0.0f : 5.0f);
+    put(cube.layers[1].voxels, near ? 0xFF604020u + i % 7 : 0u);
+    put(cube.layers[1].voxels, near ? 1.0f : 0.0f);
+    put(cube.layers[2].voxels, near ? 0.847f : i < 256 ? 0.0f : -3.5f);
+    put(cube.layers[3].voxels, static_cast<float>((i / 64) * (i / 64)));
+    for (const std::int32_t way : {-static_cast<std::int32_t>(i / 64), 0, 0}) {
+      put(cube.layers[3].voxels, way);
+    }
+    put(cube.layers[3].voxels, i < 256 ? 0x100u : 0x10100u);
+  }
+  return cube;
+}
+
 }  // namespace
 
 Transform level_pose(float x, float y, float z, int quarter_turns) {
@@ -219,6 +262,7 @@ SignatureRecord make_signature(const SignatureRecipe& recipe) {
   if (recipe.user_data) {
     r.user_data = float_matrix(2, 3, 1, numbers.floats(6, -9, 9));
   }
+  if (recipe.blocks) r.blocks = make_blocks(recipe.id);
   if (recipe.global_descriptor) {
     r.global_descriptors.push_back(
         {1, std::nullopt, float_matrix(1, 64, 1, numbers.floats(64, -1, 1))});

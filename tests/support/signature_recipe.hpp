@@ -34,6 +34,7 @@ struct SignatureRecipe {
   enum class Camera { kNone, kMono, kTwoMono, kStereo } camera = Camera::kMono;
   bool user_data = false;
   bool global_descriptor = false;
+  bool blocks = false;                   // of voxels: two of TSDF, one of each other layer
   bool sensors = false;                  // velocity, GPS, environment sensors, ground truth
   std::vector<std::int32_t> neighbours;  // links of type 0 to these ids
   std::string label;

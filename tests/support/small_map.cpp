@@ -23,6 +23,7 @@ SignatureRecipe tiny(std::int32_t id, float x, std::int32_t neighbour) {
   recipe.user_data = true;
   recipe.neighbours = {neighbour};
   if (id == 1) recipe.image = SignatureRecipe::Image::kPng;
+  recipe.blocks = id == 1;
   return recipe;
 }
 

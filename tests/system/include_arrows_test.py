@@ -90,9 +90,11 @@ ARROWS = {
     "packer/align": "packer/record platform/base",
     "packer/sources/cloud": "packer/record",
     "packer/sources/sqlite": "packer/record platform/base",
+    "packer/sources/nvblox": "packer/record packer/sources/sqlite platform/base runtime/pack_format",
     "packer/sources/rtabmap": "packer/record packer/sources/sqlite platform/base",
     "packer/sources/stella": "packer/align packer/record packer/sources/sqlite platform/base",
-    "packer/sources": "packer/record packer/sources/cloud packer/sources/rtabmap packer/sources/stella",
+    "packer/sources": "packer/record packer/sources/cloud packer/sources/nvblox packer/sources/rtabmap"
+                      " packer/sources/stella",
     "packer/outline": "packer/record",
     "packer/zones": "platform/base runtime/pack_format runtime/pack_format/file",
     "packer/encode": "packer/record platform platform/base runtime/pack_format runtime/pack_format/file",
@@ -127,7 +129,7 @@ FOREIGN = {
     r"Eigen/": "packer/align packer/sources/stella runtime/calibrate runtime/localize/camera runtime/localize/features runtime/localize/solve runtime/localize/query runtime/localize/check",
     r"CLI/": "platform/command_line runtime/zoned runtime/ctl runtime/localize/zoneloc packer packer/commands"
              " packer/console",
-    r"sqlite3\.h": "packer/sources/sqlite",
+    r"sqlite3\.h": "packer/sources/sqlite packer/export",
     r"zlib\.h": "packer/sources/rtabmap packer/preview",
     r"nlohmann/": "packer/sources/stella packer/commands packer/console packer/inspect packer/outline packer/verify packer/zones",
     r"opencv": "runtime/localize/features",

@@ -64,7 +64,13 @@ if(TARGET zonepack)
   add_test(NAME system/update_kinds
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/update_kinds_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
-  set_tests_properties(system/stella system/clouds system/update_kinds PROPERTIES TIMEOUT 600)
+  add_executable(zone_blocks ${CMAKE_CURRENT_LIST_DIR}/sources/zone_blocks.cpp)
+  zonepack_settings(zone_blocks)
+  target_link_libraries(zone_blocks PRIVATE zonepack_packer_test_support zonepack_client)
+  add_test(NAME system/nvblox
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/nvblox_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/stella system/clouds system/update_kinds system/nvblox PROPERTIES TIMEOUT 600)
 endif()
 
 if(TARGET zonepack)

@@ -13,8 +13,9 @@
 // The layout of a pack file: header, chunks, index, tail. FORMAT.md describes it byte by byte.
 namespace zonepack {
 
-inline constexpr std::uint16_t kPackMajor = 1;  // other majors are refused
-inline constexpr std::uint16_t kPackMinor = 0;  // greater minors are read: they only add
+inline constexpr std::uint16_t kPackMajor = 1;          // other majors are refused
+inline constexpr std::uint16_t kPackMinor = 1;          // greater minors are read: they only add
+inline constexpr std::uint16_t kPackMinorOfBlocks = 1;  // packs without blocks are of minor 0
 
 using Magic = std::array<std::uint8_t, 8>;
 // As in PNG: a byte that text tools damage, a name, both kinds of line end, end of file.
@@ -24,7 +25,7 @@ inline constexpr Magic kPackEndMagic = {'\n', 0x1A, '\n', '\r', 'K', 'P', 'Z', 0
 struct PackHeader {
   Magic magic = kPackMagic;
   std::uint16_t major = kPackMajor;
-  std::uint16_t minor = kPackMinor;
+  std::uint16_t minor = 0;
   std::uint32_t reserved = 0;
 };
 static_assert(sizeof(PackHeader) == 16);
@@ -33,7 +34,7 @@ struct PackTail {
   std::uint64_t index_offset = 0;
   std::uint64_t index_size = 0;
   std::uint16_t major = kPackMajor;
-  std::uint16_t minor = kPackMinor;
+  std::uint16_t minor = 0;
   std::uint32_t reserved = 0;
   Digest32 digest{};  // BLAKE2b-256 of the header, the index and this tail up to here
   Magic magic = kPackEndMagic;
