@@ -51,7 +51,7 @@ ARROWS = {
     "runtime/evaluate": "platform platform/base runtime/control runtime/evaluate/policies runtime/map runtime/memory"
                         " runtime/pack_format runtime/pack_format/file runtime/recording runtime/replay runtime/report"
                         " runtime/run runtime/settings",
-    "runtime/evaluate/policies": "platform/base runtime/memory",
+    "runtime/evaluate/policies": "platform/base runtime/control runtime/memory",
     "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
     "runtime/learn": "platform platform/base runtime/map runtime/pack_format/file runtime/recording runtime/replay"
                      " runtime/run runtime/zones",
