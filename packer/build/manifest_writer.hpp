@@ -25,8 +25,8 @@ struct VersionChange {
   std::uint32_t zones = 0;  // of the version before, like the next two
   std::uint64_t signatures = 0;
   std::uint64_t pack_bytes = 0;
-  // Zones, sorted. Drawn: with another outline, besides those added. Replaced: of which no signature
-  // of the version before was kept.
+  // Zones, sorted. Drawn: with another outline, besides those added. Replaced: with no signature of
+  // the version before.
   std::vector<std::string> added, removed, changed, drawn, replaced;
 };
 
