@@ -25,8 +25,8 @@ struct VersionChange {
   std::uint32_t zones = 0;  // of the version before, like the next two
   std::uint64_t signatures = 0;
   std::uint64_t pack_bytes = 0;
-  // Zones, sorted. Drawn: with another outline, besides those added. Replaced: of which no
-  // signature of the version before was kept.
+  // Zones, sorted. Drawn: with another outline, besides those added. Replaced: with no signature of
+  // the version before.
   std::vector<std::string> added, removed, changed, drawn, replaced;
 };
 
@@ -47,7 +47,7 @@ struct ManifestContent {
 // A signature's entry in the coarse pose graph.
 fb::Node node_at(std::int32_t id, const Transform& T_map_base);
 
-// The bytes of manifest.zpm: of minor version 0 without layers, changes and blocks. Throws
+// The bytes of manifest.zpm: of minor version 0 without layers and changes. Throws
 // std::runtime_error naming the limit of the format that the content exceeds.
 Bytes manifest_bytes(const ManifestContent& content);
 

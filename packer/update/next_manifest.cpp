@@ -159,9 +159,9 @@ VersionChange change_since(const MapReader& before, const HeldSignatures& held,
   change.changed = summary.zones_changed;
   for (std::uint32_t zone = 0; zone < contents.contents().size(); ++zone) {
     const PlannedZone& now = contents.plan().zones[zone];
-    const std::uint32_t held = index_of(contents.before(), now.name);
-    if (held == ZoneContents::kNone) continue;  // added
-    const PlannedZone& then = contents.before().zones[held];
+    const std::uint32_t before_at = index_of(contents.before(), now.name);
+    if (before_at == ZoneContents::kNone) continue;  // added
+    const PlannedZone& then = contents.before().zones[before_at];
     if (!same_place(now, then)) change.drawn.push_back(now.name);
     if (contents.contents()[zone].held == ZoneContents::kNone) change.replaced.push_back(now.name);
   }

@@ -28,15 +28,15 @@ until_status() {  # JQ-CONDITION: waits for it, and sees that the budget holds m
       (($(jq "[.charged_bytes, $most] | max" status.json) == most)) || fail "over the budget: $(cat status.json)"
       jq -e "$1" status.json >/dev/null && return 0
     fi
-    kill -0 $pid 2>/dev/null || fail "the run ended before $1"
+    kill -0 "$pid" 2>/dev/null || fail "the run ended before $1"
     sleep 0.05
   done
   fail "never $1: $(cat status.json)"
 }
 
 arrive() {  # stops the robot; its run keeps to the budget, and a replay of the recording is the same
-  kill -TERM $pid
-  wait $pid || fail "exit code $?"
+  kill -TERM "$pid"
+  wait "$pid" || fail "exit code $?"
   holds live.json ".budget_violations == 0 and .peak_charged_bytes <= $most and .lost_events == 0 and .allocations == 0"
   "$bin/zoned" replay --recording run.zpr --events again.jsonl --json again.json --report again.html >ctl.txt 2>&1 ||
     fail "$(cat ctl.txt)"
