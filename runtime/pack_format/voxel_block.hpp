@@ -56,7 +56,7 @@ enum class VoxelForm : std::uint8_t {
 };
 enum class VoxelOrder : std::uint8_t { kUnsigned, kInt, kFloat };
 
-inline constexpr std::uint32_t kMostHeads = 16;
+inline constexpr std::uint32_t kMostHeads = 64;
 
 // One field of a block's voxels. parse_block() makes it from bytes that may change later (another
 // process's memory): values are wrong then, but no read leaves the block and kColumnPadding bytes

@@ -172,7 +172,7 @@ class PlanesReader {
       }
       case 5: {
         const std::size_t count = byte() + 1, zeros = byte();
-        if (count > 16 || zeros > 23) return kNone;
+        if (count > 64 || zeros > 23) return kNone;
         take(2 * count);
         return 23 - zeros + bits_of(count);
       }

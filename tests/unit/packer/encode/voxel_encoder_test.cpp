@@ -82,8 +82,8 @@ TEST(VoxelEncoder, StoresWhatIsTheSameEverywhereAsOneNumber) {
 }
 
 TEST(VoxelEncoder, StoresColumnsOnce) {
-  // 64 values of form dictionary: 2 + (1 + 4 x 2) + 64 x 1 / 8 bytes = 19.
-  EXPECT_EQ(comes_back(1, [](auto i, auto) { return i / 8 % 2 == 0 ? 7u : 0xFFFFFF00u; }), 19u);
+  // 64 values by a choice of one of two: 2 + constant 4 + bitmap 8 + the other 4 = 18 bytes.
+  EXPECT_EQ(comes_back(1, [](auto i, auto) { return i / 8 % 2 == 0 ? 7u : 0xFFFFFF00u; }), 18u);
 }
 
 TEST(VoxelEncoder, StoresSmallIntegersInTheirBits) {
@@ -96,7 +96,7 @@ TEST(VoxelEncoder, StoresSmallIntegersInTheirBits) {
 TEST(VoxelEncoder, StoresNoiseInItsMantissaAndTheNumberOfItsExponent) {
   const auto values = noise();
   const std::size_t size = comes_back(1, [&](auto i, auto) { return values[i]; });
-  EXPECT_LE(size, 2u + 2 + 32 + 512 * 27 / 8);  // 16 signs and exponents: 4 bits, and 23
+  EXPECT_LE(size, 2u + 2 + 64 + 512 * 28 / 8);  // up to 32 signs and exponents: 5 bits, and 23
   EXPECT_GT(size, 512u * 23 / 8);
 }
 
