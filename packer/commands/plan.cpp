@@ -63,6 +63,7 @@ nlohmann::ordered_json to_json(const MapPlan& plan, const PlanArguments& argumen
   json["pair"] = names(plan, pair);
   json["live_change_budget_bytes"] = plan.live_change_bytes;
   json["fixed_bytes"] = plan.fixed_bytes;
+  json["transitions_bytes"] = plan.transitions_bytes;
   json["slot_bytes"] = kSlotBytes;
   json["table_bytes_per_slot"] = kTableBytesPerSlot;
   json["zones"] = nlohmann::ordered_json::array();
@@ -142,7 +143,9 @@ void print(const MapPlan& plan, std::ostream& out) {
       << size_text(plan.fixed_bytes) << "\nsmallest budget " << size_text(plan.smallest.bytes)
       << ", " << counted(plan.smallest.slots, "slot") << ", set by "
       << pair_text(plan, plan.smallest.pair.zone_a, plan.smallest.pair.zone_b)
-      << "\nto change maps live " << size_text(plan.live_change_bytes) << "\n";
+      << "\nto change maps live " << size_text(plan.live_change_bytes)
+      << "\nwith preload.transitions or preload.learn " << size_text(plan.transitions_bytes)
+      << " more\n";
   if (plan.budget) print(*plan.budget, plan, out);
 }
 

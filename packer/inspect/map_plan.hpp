@@ -43,6 +43,7 @@ struct BudgetPlan {
 struct MapPlan {
   PayloadMask payload = 0;
   ByteCount fixed_bytes = 0;
+  ByteCount transitions_bytes = 0;  // that a robot with preload.transitions takes in addition
   SmallestBudget smallest;
   ByteCount live_change_bytes = 0;
   std::vector<ZoneCost> zones;  // by ZoneId

@@ -2,6 +2,7 @@
 #include "runtime/control/zone_keeper.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "platform/base/require.hpp"
 
@@ -136,12 +137,19 @@ void ZoneKeeper::see_to_likely(const Wishes& wishes, std::int64_t now_ns) noexce
   const std::span<const ZoneId> likely =
       wishes.zones.subspan(std::min(wishes.useful, wishes.zones.size()));
   for (const ZoneId zone : likely) memory_.unprotect(zone);  // it may have been needed
+  if (likely.empty()) return;
+  if (std::exchange(tried_by_, wishes.foresight->looks()) != wishes.foresight->looks()) {
+    tried_count_ = 0;
+  }
+  const auto was_tried = [this](ZoneId zone) { return wants({tried_.data(), tried_count_}, zone); };
   for (const ZoneId zone : likely) {
     if (zone == loading_) loads_useful_ = !wishes.sure;
     if (loading_ != kNoZone || memory_.state(zone) != ZoneState::kAbsent) continue;
+    if (!wishes.sure && was_tried(zone)) continue;
     if (may_start(zone, Demand::kLikely, now_ns) && make_colder_room(zone, *wishes.foresight) &&
         admit(zone, Purpose::kApproach)) {
       loads_useful_ = !wishes.sure;
+      if (tried_count_ < tried_.size()) tried_[tried_count_++] = zone;
     } else if (wishes.sure) {
       return;
     }

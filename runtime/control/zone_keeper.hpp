@@ -130,6 +130,11 @@ class ZoneKeeper {
   bool held_ = false;
   ZoneId loading_ = kNoZone;
   bool loads_useful_ = false;  // what is loading is only useful or likely
+  // Likely zones whose load began by this foresight: one that lost its room again is not loaded
+  // twice by the same, as it would only lose it once more.
+  std::array<ZoneId, kMaxWanted> tried_{};
+  std::size_t tried_count_ = 0;
+  std::uint32_t tried_by_ = 0;
   ZoneId blocked_ = kNoZone;
   ZoneId does_not_fit_ = kNoZone;  // the most urgent one of this cycle
 };

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "runtime/pack_format/ids.hpp"
@@ -38,7 +39,13 @@ class Foresight {
   void follow(std::span<const ZoneId> ahead, ZoneId before, ZoneId now,
               const Transitions* transitions) noexcept;
 
-  void clear() noexcept { count_ = 0; }
+  void clear() noexcept {
+    ++looks_;
+    count_ = 0;
+  }
+
+  // Another number after each of the calls above.
+  std::uint32_t looks() const noexcept { return looks_; }
 
   // The one worth most first, then the lowest ZoneId.
   std::span<const Coming> coming() const noexcept { return {all_.data(), count_}; }
@@ -51,6 +58,7 @@ class Foresight {
 
   std::array<Coming, kMost> all_{};
   std::size_t count_ = 0;
+  std::uint32_t looks_ = 0;
 };
 
 }  // namespace zonepack

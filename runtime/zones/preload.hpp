@@ -32,7 +32,7 @@ struct PreloadSettings {
   // What Transitions are used for (Cycle), besides this path:
   std::string transitions;  // file of what was learned; empty: none
   bool learn = false;       // the run goes on learning
-  double pays = 1;          // seconds saved for each second of reading that may be for nothing
+  double pays = 1.5;        // seconds saved for each second of reading that may be for nothing
 };
 
 // Whether what was learned of the robot's habits is used.

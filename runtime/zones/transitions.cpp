@@ -6,8 +6,14 @@
 #include <tuple>
 
 #include "platform/base/require.hpp"
+#include "runtime/pack_format/file/transitions_bytes.hpp"
 
 namespace zonepack {
+
+// What zonepack plan says.
+static_assert(sizeof(Transitions::Context) == kTransitionContextBytes);
+static_assert(Transitions::kMostContexts == kMostTransitionContexts);
+
 namespace {
 
 // Of a context: so many drives count as much as what the coarser one says.

@@ -22,10 +22,9 @@ key() { python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))[sys.arg
 "$bin/zonepack" build --db "$data/hospital-small.db" --zones "$data/zones.geojson" --out map \
   --payload features,scan,grid >/dev/null 2>&1
 cp "$source/config/agilex.yaml" plain.yaml
-settings() {  # FILE LINE...: the plain settings with lines in the section preload
-  local file=$1
-  shift
-  sed "s|^preload:.*|preload:$(printf '\\n  %s' "$@")|; s|^  folder: \"\"|  folder: state|" plain.yaml >"$file"
+settings() {  # FILE TRANSITIONS LEARN: the plain settings with these
+  sed "s|^  transitions: \"\"|  transitions: $2|; s|^  learn: false|  learn: $3|; s|^  folder: \"\"|  folder: state|" \
+    plain.yaml >"$1"
 }
 replay() {  # CONFIG JSON [OPTION...]
   exits 0 "$bin/zoned" replay --config "$1" --map map --can "$mission/can0.log" --corrections "$mission/corrections.txt" \
@@ -44,7 +43,7 @@ exits 0 "$bin/zoned" learn "$mission/zone.txt" --from habits.zpt --map map --out
 says "context"
 
 # It is read, makes the robot wait less or as long, and without it nothing changes.
-settings habits.yaml "transitions: habits.zpt"
+settings habits.yaml habits.zpt false
 replay plain.yaml plain.json
 replay habits.yaml habits.json --events first.jsonl
 python3 - <<'END'
@@ -66,7 +65,7 @@ python3 -c 'import json; a, b = (json.load(open(n + ".json"))["zone_absent_s"] f
 # A live run learns on, and its recording needs no file; the next run goes on from there.
 privilege=()
 chrt -f 1 true 2>/dev/null || privilege=(--allow-degraded)
-settings live.yaml "transitions: habits.zpt" "learn: true"
+settings live.yaml habits.zpt true
 live() {
   "$bin/zoned" run --config live.yaml --map map --can "log:$mission/can0.log@100000" \
     --corrections "$mission/corrections.txt" --storage-rate 60000 "${privilege[@]}" "$@"
@@ -90,7 +89,7 @@ says "transitions .* of the budget"
 
 # What is damaged, foreign or wrong is named.
 head -c 50 habits.zpt >cut.zpt
-settings cut.yaml "transitions: cut.zpt"
+settings cut.yaml cut.zpt false
 exits 1 "$bin/zoned" replay --config cut.yaml --map map --can "$mission/can0.log"
 says "preload.transitions: .*cut.zpt: holds 26 of"
 exits 1 "$bin/zoned" learn "$mission/can0.log" --map map --out x.zpt
