@@ -10,7 +10,6 @@
 
 #include "packer/build/damages.hpp"
 #include "packer/build/placing.hpp"
-#include "platform/progress.hpp"
 #include "packer/build/sessions.hpp"
 #include "packer/encode/pack_writer.hpp"
 #include "packer/record/source_kind.hpp"
@@ -18,6 +17,7 @@
 #include "packer/zones/partition.hpp"
 #include "packer/zones/split.hpp"
 #include "packer/zones/zone_file.hpp"
+#include "platform/progress.hpp"
 #include "runtime/pack_format/file/accounting.hpp"
 
 // Builds a map, a folder with one pack per zone and a manifest, from a database and a zone file.

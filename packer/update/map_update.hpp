@@ -10,12 +10,12 @@
 
 #include "packer/build/damages.hpp"
 #include "packer/build/placing.hpp"
-#include "platform/progress.hpp"
 #include "packer/build/sessions.hpp"
 #include "packer/record/source_kind.hpp"
 #include "packer/zones/orphans.hpp"
 #include "packer/zones/partition.hpp"
 #include "platform/base/byte_count.hpp"
+#include "platform/progress.hpp"
 
 // Makes the next version of a map in its folder, of which most zones stay as they are.
 namespace zonepack::packer {

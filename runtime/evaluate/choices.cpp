@@ -16,8 +16,9 @@ constexpr std::uint64_t kAutoSteps = 7;
 std::vector<std::optional<ByteCount>> budgets_of(const EvaluateArguments& arguments,
                                                  const Settings& settings, const Catalog& catalog,
                                                  const std::vector<std::uint64_t>& limits) {
-  if (!arguments.budgets.empty()) return {arguments.budgets.begin(), arguments.budgets.end()};
+  std::vector<ByteCount> budgets = arguments.budgets;
   if (!arguments.auto_budgets) {
+    if (!budgets.empty()) return {budgets.begin(), budgets.end()};
     if (settings.memory.budget) return {settings.memory.budget};
     const bool limited = std::ranges::none_of(limits, [](auto limit) { return limit == 0; });
     if (limited) return {std::nullopt};
@@ -26,7 +27,9 @@ std::vector<std::optional<ByteCount>> budgets_of(const EvaluateArguments& argume
   for (const std::string& name : settings.memory.pinned) {
     if (const ZoneId zone = catalog.find(name); zone != kNoZone) pinned.push_back(zone);
   }
-  const std::vector<ByteCount> budgets = auto_budgets(catalog, pinned);
+  for (const ByteCount budget : auto_budgets(catalog, pinned)) budgets.push_back(budget);
+  std::ranges::sort(budgets);
+  budgets.erase(std::unique(budgets.begin(), budgets.end()), budgets.end());
   return {budgets.begin(), budgets.end()};
 }
 

@@ -41,6 +41,7 @@ std::vector<std::string_view> parts_of(std::string_view text) {
 template <typename Named>
 std::vector<std::string> names_of(const std::vector<Named>& all) {
   std::vector<std::string> names;
+  names.reserve(all.size());
   for (const Named& one : all) names.emplace_back(one.name);
   return names;
 }

@@ -99,6 +99,17 @@ TEST(Choices, TryAllBudgetsWhereNothingLimits) {
   EXPECT_EQ(choices->size(), 2u * 5);
 }
 
+TEST(Choices, TryGivenBudgetsAmongThoseOfAuto) {
+  EvaluateArguments arguments;
+  arguments.auto_budgets = true;
+  arguments.budgets = {1000 + 30 * kSlot, 1000 + 16 * kSlot};
+  const auto choices = choices_of(arguments, one_map());
+  ASSERT_TRUE(choices.ok()) << choices.error().message;
+  // Five, of which one was given too, and one over the whole map.
+  ASSERT_EQ(choices->size(), 2u * 6);
+  EXPECT_EQ(choices->back().budget, 1000 + 30 * kSlot);
+}
+
 TEST(Choices, LeaveTheBudgetOpenWhereSignaturesAreLimited) {
   EvaluateArguments arguments;
   arguments.max_signatures = {160, 180};
