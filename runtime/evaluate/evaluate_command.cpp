@@ -92,10 +92,15 @@ Outcome<void> read_drives(const EvaluateArguments& arguments, Evaluation& evalua
   return {};
 }
 
-Outcome<void> write_traces(const std::string& folder, std::vector<Evaluated>& results) {
+// Before a run that would be made for nothing.
+Outcome<void> make_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) return failure(folder + ": cannot be made: " + error.message(), ErrorCode::kIo);
+  if (!error) return {};
+  return failure("--trace-csv: " + folder + ": cannot be made: " + error.message(), ErrorCode::kIo);
+}
+
+Outcome<void> write_traces(const std::string& folder, std::vector<Evaluated>& results) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     auto written = write_output(folder + "/" + trace_file_name(i), results[i].order_csv);
     if (!written) return written;
@@ -184,6 +189,7 @@ std::vector<std::string> preload_names() { return names_of(preload_modes()); }
 
 int run_evaluate(const EvaluateArguments& arguments) {
   auto done = check_outputs({{"--json", arguments.json, true}, {"--report", arguments.report}});
+  if (done && !arguments.trace_csv.empty()) done = make_folder(arguments.trace_csv);
   if (done) done = evaluate_all(arguments);
   return done ? 0 : report_failure(kProgram, done.error());
 }

@@ -142,6 +142,7 @@ std::vector<Sample> curve(const RunTrace& trace, Value&& value) {
 
 std::vector<Sample> curve(const std::vector<BaselineRow>& rows, double BaselineRow::*value) {
   std::vector<Sample> samples;
+  samples.reserve(rows.size());
   for (const BaselineRow& row : rows) samples.push_back({row.t_s, row.*value});
   return samples;
 }
