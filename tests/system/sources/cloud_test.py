@@ -150,6 +150,8 @@ def check_bad(work, points):
     refused(work, "none.pcd", ascii_[:ascii_.index(b"DATA")].replace(b" 50", b" 0") + b"DATA ascii\n", "holds no signatures")
     refused(work, "far.pcd", b"VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nPOINTS 1\nDATA ascii\n"
             b"1e30 nan 0\n", "holds no signatures")
+    refused(work, "overflow.pcd", b"VERSION 0.7\nFIELDS x y z\nSIZE 4 4 8\nTYPE F F F\nCOUNT 1 1 1\nPOINTS 2\nDATA ascii\n"
+            b"1e39 1 1\n1 1 -1e999\n", "holds no signatures")
     (work / "spool.pcd").write_bytes(binary)
     done = build(work / "spool.pcd", work / "never", code=1, TMPDIR=str(work / "missing"))
     need("TMPDIR" in done.stderr, done.stderr)
