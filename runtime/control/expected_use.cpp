@@ -40,6 +40,10 @@ ZoneId ExpectedUse::choose(const EvictionCandidates& candidates) noexcept {
   return follows_shadow_ ? first_outside_shadow(candidates) : least_expected(candidates);
 }
 
+bool ExpectedUse::goes_before(ZoneId zone, ZoneId colder) noexcept {
+  return !follows_shadow_ && forecast_.value(zone) < forecast_.value(colder);
+}
+
 ZoneId ExpectedUse::least_expected(const EvictionCandidates& candidates) noexcept {
   ZoneId least = candidates.coldest();
   float value = forecast_.value(least);

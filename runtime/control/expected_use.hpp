@@ -43,6 +43,7 @@ class ExpectedUse final : public EvictionOrder {
   void requested(ZoneId zone, bool resident) noexcept override;
   void loaded(ZoneId zone, ZoneNeed need) noexcept override;
   ZoneId choose(const EvictionCandidates& candidates) noexcept override;
+  bool goes_before(ZoneId zone, ZoneId colder) noexcept override;
 
   // The forecast did worse than the least recently used order, which is followed.
   bool follows_shadow() const noexcept { return follows_shadow_; }

@@ -156,25 +156,42 @@ void ZoneKeeper::see_to_likely(const Wishes& wishes, std::int64_t now_ns) noexce
   }
 }
 
-// Whether the zone fits, if need be once zones are evicted that are worth less: the least recently
-// used first, and none of them unless they are enough.
+// Whether the zone fits, if need be once zones are evicted that are worth less: the least worth
+// first, and none of them unless they are enough. Of zones worth the same, the one that would be
+// evicted first anyway.
 bool ZoneKeeper::make_colder_room(ZoneId zone, const Foresight& foresight) noexcept {
-  std::array<ZoneId, kMaxWanted> colder;
+  struct Colder {
+    ZoneId zone;
+    float worth;
+  };
+  std::array<Colder, kMostColder> colder;
   std::size_t count = 0;
   NeedSum room = memory_.room();
   const ZoneNeed need = needs_[zone];
   const auto fits = [&] { return need.slots <= room.slots && need.signatures <= room.signatures; };
-  const float worth = foresight.worth(zone);
-  if (!memory_.frozen()) {
-    for (ZoneId other = memory_.coldest(); other != kNoZone && !fits() && count < colder.size();
+  if (!fits() && !memory_.frozen()) {
+    const float worth = foresight.worth(zone);
+    for (ZoneId other = memory_.coldest(); other != kNoZone && count < colder.size();
          other = memory_.warmer(other)) {
-      if (foresight.worth(other) >= worth) continue;
-      colder[count++] = other;
-      room.add(needs_[other]);
+      const Colder one{other, foresight.worth(other)};
+      if (one.worth < worth) colder[count++] = one;
     }
   }
+  std::size_t taken = 0;
+  for (; !fits() && taken < count; ++taken) {
+    std::size_t least = taken;
+    for (std::size_t i = taken + 1; i < count; ++i) {
+      const Colder &a = colder[i], &b = colder[least];
+      if (a.worth != b.worth ? a.worth < b.worth : memory_.goes_before(a.zone, b.zone)) least = i;
+    }
+    // The others keep their places, so that the coldest comes first among equals.
+    std::rotate(colder.begin() + static_cast<std::ptrdiff_t>(taken),
+                colder.begin() + static_cast<std::ptrdiff_t>(least),
+                colder.begin() + static_cast<std::ptrdiff_t>(least) + 1);
+    room.add(needs_[colder[taken].zone]);
+  }
   if (!fits()) return false;
-  for (std::size_t i = 0; i < count; ++i) drop(colder[i]);
+  for (std::size_t i = 0; i < taken; ++i) drop(colder[i].zone);
   return true;
 }
 

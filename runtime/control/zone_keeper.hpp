@@ -34,7 +34,8 @@ struct ZoneKeeperSettings {
 class ZoneKeeper {
  public:
   static constexpr std::size_t kMaxWanted = 16;
-  static constexpr std::size_t kMostPins = 64;  // besides those given at the start
+  static constexpr std::size_t kMostColder = 64;  // looked at for the room of a likely zone
+  static constexpr std::size_t kMostPins = 64;    // besides those given at the start
 
   // needs: of every zone, by ZoneId. The pinned zones must have been accepted by Residency::pin().
   // directory: updated with which zones can be read; may be null. References and spans must outlive

@@ -79,6 +79,9 @@ class EvictionOrder {
   virtual void removed(ZoneId /*zone*/) noexcept {}
 
   virtual ZoneId choose(const EvictionCandidates& candidates) noexcept = 0;
+
+  // Whether one candidate would go before another that is colder.
+  virtual bool goes_before(ZoneId /*zone*/, ZoneId /*colder*/) noexcept { return false; }
 };
 
 // What an order is made for.

@@ -150,6 +150,11 @@ class Residency {
     if (order_ != nullptr) order_->requested(zone, resident(zone));
   }
 
+  // Whether one candidate for eviction goes before another that is colder.
+  bool goes_before(ZoneId zone, ZoneId colder) noexcept {
+    return order_ != nullptr && order_->goes_before(zone, colder);
+  }
+
   // Marks a zone as most recently used.
   void touch(ZoneId zone) noexcept;
 
