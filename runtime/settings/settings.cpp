@@ -73,7 +73,8 @@ void read_file(const YAML::Node& root, const std::string& path, Settings& settin
   read_gpio(file, settings.gpio, faults);
   file.finish();
   check_together(settings, faults);
-  for (std::string* const folder : {&settings.map.path, &settings.state.folder, &settings.preload.transitions}) {
+  for (std::string* const folder :
+       {&settings.map.path, &settings.state.folder, &settings.preload.transitions}) {
     if (!folder->empty()) *folder = beside(path, *folder);
   }
 }
