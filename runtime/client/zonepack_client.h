@@ -128,8 +128,8 @@ size_t zp_blob(const zp_zone* zone, uint32_t index, zp_blob_kind kind,
 /* ---- blocks of voxels (maps of nvblox) ---- */
 
 typedef struct {
-  int32_t x, y, z;  /* its lower corner is index x block size, in the map frame */
-  uint32_t layers;  /* bit 0 TSDF, 1 colour, 2 occupancy, 3 ESDF */
+  int32_t x, y, z; /* its lower corner is index x block size, in the map frame */
+  uint32_t layers; /* bit 0 TSDF, 1 colour, 2 occupancy, 3 ESDF */
 } zp_block;
 
 typedef enum { ZP_TSDF, ZP_COLOR, ZP_OCCUPANCY, ZP_ESDF } zp_layer;

@@ -17,6 +17,7 @@
 #include "packer/sources/nvblox/nvblox_source.hpp"
 #include "runtime/pack_format/column.hpp"
 #include "runtime/pack_format/voxel_block.hpp"
+#include "tests/support/memory_folder.hpp"
 #include "tests/support/signature_recipe.hpp"
 #include "tests/support/temporary_folder.hpp"
 
