@@ -105,7 +105,7 @@ def forecasts_as_the_robot_does():
             Path(name).write_bytes((SOURCE / "config" / name).read_bytes())
     settings, once = re.subn(r"^memory:$", "memory:\n  eviction: expected", settings, flags=re.MULTILINE)
     settings, again = re.subn(r"^preload:$", "preload:\n  learn: true", settings, flags=re.MULTILINE)
-    need(once == 1 and again == 1, "agilex.yaml has no sections memory and preload")
+    need(once == 1 and again == 1, "agilex.yaml has no eviction and learn")
     Path("habits.yaml").write_text(settings)
     limit = ("--max-signatures", "60")
     replayed = json.loads(run(BIN / "zoned", "replay", "--config", "habits.yaml", "--map", "map", *LOG, *limit,
