@@ -242,6 +242,17 @@ TEST_F(LikelyZones, TakeTheRoomOfWhatIsWorthLess) {
   EXPECT_FALSE(keeper->blocked());
 }
 
+// The way is 1, 3, 2; held are 3, which is colder, and 2, which comes later.
+TEST_F(LikelyZones, TakeTheRoomOfWhatIsWorthLeastAlthoughAnotherIsColder) {
+  make(12, {});
+  hold(3);
+  hold(2);
+  hold(0);
+  foresight.follow(std::vector<ZoneId>{1, 3, 2}, kNoZone, 0, nullptr);
+  keep({0, 1, 3, 2}, 1, true);
+  EXPECT_EQ(taken(), (Log{"evicted 2", "load_started 1"}));
+}
+
 TEST_F(LikelyZones, AreGivenUpWhenTheyDoNotCome) {
   hold(0);
   foresight.follow(std::vector<ZoneId>{1}, kNoZone, 0, nullptr);
