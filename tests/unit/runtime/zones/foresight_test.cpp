@@ -12,7 +12,7 @@ namespace {
 
 using testing_support::three_rooms;
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kOneSecond_ns = 1'000'000'000;
 
 std::vector<ZoneId> zones(const Foresight& foresight) {
   std::vector<ZoneId> list;
@@ -24,8 +24,8 @@ TEST(Foresight, LooksSeveralStepsAhead) {
   const ZoneGraph graph = three_rooms();
   Transitions table(graph);
   for (int i = 0; i < 20; ++i) {
-    table.learn(kNoZone, 0, 1, 10 * kSecond_ns);
-    table.learn(0, 1, 2, 20 * kSecond_ns);
+    table.learn(kNoZone, 0, 1, 10 * kOneSecond_ns);
+    table.learn(0, 1, 2, 20 * kOneSecond_ns);
   }
   Foresight foresight;
   foresight.look(table, kNoZone, 0);

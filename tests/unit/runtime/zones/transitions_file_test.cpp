@@ -14,15 +14,15 @@ namespace {
 using testing_support::box;
 using testing_support::three_rooms;
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kDrivenSecond_ns = 1'000'000'000;
 
 class TransitionsFile : public testing::Test {
  protected:
   TransitionsFile() {
     for (int i = 0; i < 3; ++i) {
-      table.learn(kNoZone, 0, 1, 4 * kSecond_ns);
-      table.learn(0, 1, 2, 5 * kSecond_ns);
-      table.learn(1, 2, 1, 30 * kSecond_ns);
+      table.learn(kNoZone, 0, 1, 4 * kDrivenSecond_ns);
+      table.learn(0, 1, 2, 5 * kDrivenSecond_ns);
+      table.learn(1, 2, 1, 30 * kDrivenSecond_ns);
     }
   }
 

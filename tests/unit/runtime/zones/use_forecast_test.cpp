@@ -10,14 +10,15 @@ namespace {
 
 using testing_support::box;
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kStay_ns = 1'000'000'000;
 constexpr float kOne = UseForecast::kPerZone, kTwo = kOne * kOne;
 
 // Three rooms in a row, each 4 m square: a (x 0 to 4), b, c.
-constexpr ZoneId kA = 0, kB = 1, kC = 2;
+constexpr ZoneId kLeft = 0, kMiddle = 1, kRight = 2;
 
 ZoneGraph row() {
-  const GraphPortal portals[] = {{kA, kB, {{4, 1}, {4, 3}}}, {kB, kC, {{8, 1}, {8, 3}}}};
+  const GraphPortal portals[] = {{kLeft, kMiddle, {{4, 1}, {4, 3}}},
+                                 {kMiddle, kRight, {{8, 1}, {8, 3}}}};
   return ZoneGraph({{"a", box(0, 0, 4, 4)}, {"b", box(4, 0, 8, 4)}, {"c", box(8, 0, 12, 4)}},
                    portals);
 }
@@ -45,43 +46,44 @@ class UseForecastTest : public testing::Test {
 // From a the only way is to b; from there, with nothing learned, to c (straight on, weight 3) or
 // back to a (weight 0.25).
 TEST_F(UseForecastTest, AZoneIsWorthTheSoonerAndTheLikelierItIsEntered) {
-  forecast.begin(kNoZone, kA, {});
-  EXPECT_FLOAT_EQ(forecast.value(kB), kOne);
-  EXPECT_GT(forecast.value(kC), kTwo * 3 / 3.25F);  // at once, or after going back
-  EXPECT_LT(forecast.value(kC), kTwo);
-  EXPECT_GT(forecast.value(kA), kTwo * 0.25F / 3.25F);
-  EXPECT_LT(forecast.value(kA), forecast.value(kC));
+  forecast.begin(kNoZone, kLeft, {});
+  EXPECT_FLOAT_EQ(forecast.value(kMiddle), kOne);
+  EXPECT_GT(forecast.value(kRight), kTwo * 3 / 3.25F);  // at once, or after going back
+  EXPECT_LT(forecast.value(kRight), kTwo);
+  EXPECT_GT(forecast.value(kLeft), kTwo * 0.25F / 3.25F);
+  EXPECT_LT(forecast.value(kLeft), forecast.value(kRight));
 }
 
 TEST_F(UseForecastTest, HabitsChangeTheForecast) {
-  for (int i = 0; i < 20; ++i) transitions.learn(kA, kB, kA, kSecond_ns);
-  forecast.begin(kNoZone, kA, {});
-  EXPECT_GT(forecast.value(kA), forecast.value(kC));
+  for (int i = 0; i < 20; ++i) transitions.learn(kLeft, kMiddle, kLeft, kStay_ns);
+  forecast.begin(kNoZone, kLeft, {});
+  EXPECT_GT(forecast.value(kLeft), forecast.value(kRight));
 }
 
 TEST_F(UseForecastTest, ZonesOfARouteComeInItsOrderAndBeforeWhatIsOnlyLikely) {
-  const ZoneId ahead[] = {kB, kA, kB};
-  forecast.begin(kNoZone, kA, ahead);
-  EXPECT_FLOAT_EQ(forecast.value(kB), 1 + kOne);
-  EXPECT_FLOAT_EQ(forecast.value(kA), 1 + kTwo);
+  const ZoneId ahead[] = {kMiddle, kLeft, kMiddle};
+  forecast.begin(kNoZone, kLeft, ahead);
+  EXPECT_FLOAT_EQ(forecast.value(kMiddle), 1 + kOne);
+  EXPECT_FLOAT_EQ(forecast.value(kLeft), 1 + kTwo);
   // From the end of the route on, c comes straight on at the earliest, four zones from now.
-  EXPECT_LT(forecast.value(kC), kTwo * kTwo);
-  EXPECT_GT(forecast.value(kC), kTwo * kTwo * 0.9F);
+  EXPECT_LT(forecast.value(kRight), kTwo * kTwo);
+  EXPECT_GT(forecast.value(kRight), kTwo * kTwo * 0.9F);
 }
 
 TEST_F(UseForecastTest, NothingIsExpectedWhereTheRobotIsInNoZone) {
-  forecast.begin(kA, kNoZone, {});
-  EXPECT_EQ(forecast.value(kA), 0);
+  forecast.begin(kLeft, kNoZone, {});
+  EXPECT_EQ(forecast.value(kLeft), 0);
   EXPECT_TRUE(forecast.finished());
 }
 
 TEST_F(UseForecastTest, ValuesDoNotDependOnHowTheWorkIsSpread) {
   UseForecast spread(transitions);
-  forecast.begin(kNoZone, kA, {});
-  spread.begin(kNoZone, kA, {});
+  forecast.begin(kNoZone, kLeft, {});
+  spread.begin(kNoZone, kLeft, {});
   int parts = 0;
   for (; !spread.finished(); ++parts) spread.advance();
-  for (const ZoneId zone : {kA, kB, kC}) EXPECT_EQ(spread.value(zone), forecast.value(zone));
+  for (const ZoneId zone : {kLeft, kMiddle, kRight})
+    EXPECT_EQ(spread.value(zone), forecast.value(zone));
   // 5 states (a from nowhere; b from a; a, c from b; b from c) by four, 60 steps by two.
   EXPECT_EQ(parts, 2 + 60 / 2);
 }
