@@ -2,6 +2,7 @@
 #include "runtime/control/cycle.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "platform/base/require.hpp"
 #include "platform/can_errors.hpp"
@@ -20,6 +21,7 @@ constexpr double kPathGives_s = 0.5;
 // A likely zone is loaded so many times its loading before it is expected: until then a step of the
 // robot may show better what comes.
 constexpr double kEarly = 3;
+constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
 
 // To the nearest thousandth, by arithmetic that gives the same on every machine.
 std::int32_t thousandths(double value) noexcept {
@@ -46,7 +48,7 @@ Cycle::Cycle(const CycleConfig& settings, const CycleParts& parts)
       tracker_settings_(settings.tracker),
       transitions_(parts.transitions),
       preloads_(uses_habits(settings.preload)),
-      learns_(settings.preload.learn && parts.transitions != nullptr),
+      learns_((settings.preload.learn || parts.memory.has_order()) && parts.transitions != nullptr),
       pays_(settings.preload.pays),
       load_s_(parts.load_s) {
   state_.map = parts.map;
@@ -116,7 +118,8 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
                              wanted.useful,
                              own_first && (!state_.lost || state_.pose.valid),
                              &foresight_,
-                             !route_ahead().empty()});
+                             !route_ahead().empty(),
+                             wanted.due});
 
   state_.zone_resident = state_.zone != kNoZone && memory_.resident(state_.zone);
   state_.map_ready = state_.pose.trusted && state_.zone_resident;
@@ -318,6 +321,7 @@ void Cycle::foresee() noexcept {
   } else if (preloads_ && transitions_ != nullptr && own != kNoZone) {
     foresight_.look(*transitions_, steps_.before(), own);
   }
+  double before_s = 0;  // for loading all that is listed so far
   for (const Coming& coming : foresight_.coming()) {
     if (likely_count_ == likely_.size()) break;
     if (coming.zone == own || !graph_.loadable(coming.zone)) continue;
@@ -328,11 +332,16 @@ void Cycle::foresee() noexcept {
     const double saved_s = share * (load_s - kPathGives_s);
     if (ahead.empty() && saved_s < pays_ * (1 - share) * load_s) continue;
     if (ahead.empty() && saved_s <= 0) continue;
-    const double early_s = static_cast<double>(coming.seconds) - kEarly * load_s;
-    likely_[likely_count_++] = {coming.zone,
-                                ahead.empty() && early_s > 0
-                                    ? steps_.since_ns() + static_cast<std::int64_t>(early_s * 1e9)
-                                    : steps_.since_ns()};
+    before_s += load_s;
+    const double early_s =
+        static_cast<double>(coming.seconds) - kEarly * load_s - (ahead.empty() ? 0 : before_s);
+    std::int64_t from_ns = steps_.since_ns();
+    if (saved_s <= 0) {
+      from_ns = kNever_ns;  // its path gives it away early enough
+    } else if (early_s > 0) {
+      from_ns += static_cast<std::int64_t>(early_s * 1e9);
+    }
+    likely_[likely_count_++] = {coming.zone, from_ns};
   }
   // The destination, however far, takes the last place.
   if (!ahead.empty() && likely_count_ == likely_.size()) likely_.back().zone = ahead.back();
@@ -388,6 +397,9 @@ Cycle::Wanted Cycle::list_wanted(std::int64_t now_ns) const noexcept {
   for (std::size_t i = 0; i < likely_count_; ++i) {
     if (now_ns >= likely_[i].from_ns) wanted.add(likely_[i].zone);
   }
+  wanted.due = wanted.count;
+  if (route_ahead().empty()) return wanted;
+  for (std::size_t i = 0; i < likely_count_; ++i) wanted.add(likely_[i].zone);
   return wanted;
 }
 

@@ -161,6 +161,7 @@ class Cycle {
     std::size_t urgent = 0;
     std::size_t needed = 0;
     std::size_t useful = 0;
+    std::size_t due = 0;
     const ZoneGraph* graph = nullptr;
     void add(ZoneId zone) noexcept;
   };
@@ -197,7 +198,9 @@ class Cycle {
   Foresight foresight_;
   struct Likely {
     ZoneId zone = kNoZone;
-    std::int64_t from_ns = 0;  // earlier there is time to learn more
+    // Earlier there is time to learn more, and on a route only free room is taken: what is evicted
+    // early, before the robot has left a zone that it needs less, is loaded once more.
+    std::int64_t from_ns = 0;
   };
   std::array<Likely, kMostLikely> likely_{};  // to be loaded before they are approached
   std::size_t likely_count_ = 0;

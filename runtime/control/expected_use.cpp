@@ -16,6 +16,7 @@ ExpectedUse::ExpectedUse(const EvictionPlace& place)
       most_credit_(static_cast<std::int64_t>(kMostCredit * static_cast<double>(place.slots))) {}
 
 void ExpectedUse::begin_cycle(const EvictionMoment& moment) noexcept {
+  approached_ = false;
   const bool elsewhere = moment.zone != zone_ || moment.zone_before != zone_before_;
   if (elsewhere || !std::ranges::equal(moment.ahead, ahead())) {
     zone_ = moment.zone;
@@ -30,6 +31,10 @@ void ExpectedUse::begin_cycle(const EvictionMoment& moment) noexcept {
 
 void ExpectedUse::requested(ZoneId zone, bool /*resident*/) noexcept {
   loss_ = std::max(loss_ - shadow_.request(zone), -most_credit_);
+  // Approached, the first of a cycle before the others: what comes after it counts.
+  if (approached_ || zone == zone_ || zone_ == kNoZone || ahead_count_ > 0) return;
+  approached_ = true;
+  forecast_.begin(zone_, zone, {});
 }
 
 void ExpectedUse::loaded(ZoneId /*zone*/, ZoneNeed need) noexcept { loss_ += need.slots; }

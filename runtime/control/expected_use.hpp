@@ -67,6 +67,7 @@ class ExpectedUse final : public EvictionOrder {
   std::int64_t most_loss_;    // slots
   std::int64_t most_credit_;  // slots
   std::int64_t loss_ = 0;     // slots loaded, less those that the shadow loaded
+  bool approached_ = false;   // a zone, in this cycle
   bool follows_shadow_ = false;
 };
 

@@ -80,7 +80,7 @@ ZoneKeeper::Demand ZoneKeeper::demand_of(std::size_t place, const Wishes& wishes
 void ZoneKeeper::keep(std::int64_t now_ns, const Wishes& wishes) noexcept {
   const std::span<const ZoneId> wanted = wishes.zones;
   ZP_REQUIRE(wanted.size() <= kMaxWanted);
-  drop_unwanted(wanted);
+  drop_unwanted(wanted, std::min(wishes.needed, wanted.size()));
   does_not_fit_ = kNoZone;
   for (std::size_t place = 0; place < std::min(wishes.useful, wanted.size()); ++place) {
     see_to(place, wishes, now_ns);
@@ -90,13 +90,14 @@ void ZoneKeeper::keep(std::int64_t now_ns, const Wishes& wishes) noexcept {
   set_blocked(does_not_fit_);
   std::copy(wanted.begin(), wanted.end(), wanted_.begin());
   wanted_count_ = wanted.size();
+  needed_count_ = std::min(wishes.needed, wanted.size());
 }
 
 bool ZoneKeeper::wants(std::span<const ZoneId> list, ZoneId zone) const noexcept {
   return std::find(list.begin(), list.end(), zone) != list.end();
 }
 
-void ZoneKeeper::drop_unwanted(std::span<const ZoneId> wanted) noexcept {
+void ZoneKeeper::drop_unwanted(std::span<const ZoneId> wanted, std::size_t needed) noexcept {
   // The most urgent last, which leaves it the warmest.
   for (std::size_t i = wanted_count_; i-- > 0;) {
     const ZoneId zone = wanted_[i];
@@ -105,9 +106,10 @@ void ZoneKeeper::drop_unwanted(std::span<const ZoneId> wanted) noexcept {
     emit(EventKind::kZoneUnwanted, zone);
   }
   for (const ZoneId zone : wanted) {
-    if (wants({wanted_.data(), wanted_count_}, zone)) continue;
-    memory_.request(zone);
-    emit(EventKind::kZoneWanted, zone);
+    if (!wants({wanted_.data(), wanted_count_}, zone)) emit(EventKind::kZoneWanted, zone);
+  }
+  for (const ZoneId zone : wanted.first(needed)) {
+    if (!wants({wanted_.data(), needed_count_}, zone)) memory_.request(zone);
   }
   if (loading_ != kNoZone && !wants(wanted, loading_) && !memory_.pinned(loading_)) cancel_load();
 }
@@ -142,11 +144,14 @@ void ZoneKeeper::see_to_likely(const Wishes& wishes, std::int64_t now_ns) noexce
     tried_count_ = 0;
   }
   const auto was_tried = [this](ZoneId zone) { return wants({tried_.data(), tried_count_}, zone); };
-  for (const ZoneId zone : likely) {
+  const std::size_t due = wishes.due - std::min(wishes.due, wishes.useful);
+  for (std::size_t i = 0; i < likely.size(); ++i) {
+    const ZoneId zone = likely[i];
     if (zone == loading_) loads_useful_ = !wishes.sure;
     if (loading_ != kNoZone || memory_.state(zone) != ZoneState::kAbsent) continue;
     if (!wishes.sure && was_tried(zone)) continue;
-    if (may_start(zone, Demand::kLikely, now_ns) && make_colder_room(zone, *wishes.foresight) &&
+    if (may_start(zone, Demand::kLikely, now_ns) &&
+        (i < due ? make_colder_room(zone, *wishes.foresight) : fits_free(zone)) &&
         admit(zone, Purpose::kApproach)) {
       loads_useful_ = !wishes.sure;
       if (tried_count_ < tried_.size()) tried_[tried_count_++] = zone;
@@ -193,6 +198,11 @@ bool ZoneKeeper::make_colder_room(ZoneId zone, const Foresight& foresight) noexc
   if (!fits()) return false;
   for (std::size_t i = 0; i < taken; ++i) drop(colder[i].zone);
   return true;
+}
+
+bool ZoneKeeper::fits_free(ZoneId zone) const noexcept {
+  const NeedSum room = memory_.room();
+  return needs_[zone].slots <= room.slots && needs_[zone].signatures <= room.signatures;
 }
 
 bool ZoneKeeper::may_start(ZoneId zone, Demand demand, std::int64_t now_ns) noexcept {

@@ -64,6 +64,7 @@ class ZoneKeeper {
     const Foresight* foresight = nullptr;  // needed for likely ones
     bool sure = false;  // likely ones are the way ahead, in its order: none is loaded before one
                         // that comes sooner, and only the robot's own zone breaks a load off
+    std::size_t due = kMaxWanted;  // likely ones after these take free room only
   };
   void keep(std::int64_t now_ns, const Wishes& wishes) noexcept;
   void keep(std::int64_t now_ns, std::span<const ZoneId> wanted, std::size_t urgent,
@@ -103,11 +104,12 @@ class ZoneKeeper {
   };
 
   bool wants(std::span<const ZoneId> list, ZoneId zone) const noexcept;
-  void drop_unwanted(std::span<const ZoneId> wanted) noexcept;
+  void drop_unwanted(std::span<const ZoneId> wanted, std::size_t needed) noexcept;
   enum class Demand : std::uint8_t { kLikely, kUseful, kPossible, kUrgent, kOwn };
   static Demand demand_of(std::size_t place, const Wishes& wishes) noexcept;
   void see_to(std::size_t place, const Wishes& wishes, std::int64_t now_ns) noexcept;
   void see_to_likely(const Wishes& wishes, std::int64_t now_ns) noexcept;
+  bool fits_free(ZoneId zone) const noexcept;
   bool make_colder_room(ZoneId zone, const Foresight& foresight) noexcept;
   bool may_start(ZoneId zone, Demand demand, std::int64_t now_ns) noexcept;
   void keep_pinned(std::int64_t now_ns) noexcept;
@@ -128,6 +130,7 @@ class ZoneKeeper {
   std::vector<Retry> retries_;
   std::array<ZoneId, kMaxWanted> wanted_{};
   std::size_t wanted_count_ = 0;
+  std::size_t needed_count_ = 0;  // of these
   bool held_ = false;
   ZoneId loading_ = kNoZone;
   bool loads_useful_ = false;  // what is loading is only useful or likely

@@ -68,7 +68,8 @@ class EvictionOrder {
   virtual ~EvictionOrder() = default;
 
   virtual void begin_cycle(const EvictionMoment& /*moment*/) noexcept {}
-  // The zone is wanted from now on and was not before: a hit when it is resident, else a miss.
+  // The zone is needed from now on and was not before, when it may have been likely: a hit when it
+  // is resident, else a miss.
   virtual void requested(ZoneId /*zone*/, bool /*resident*/) noexcept {}
   // The zone became resident.
   virtual void loaded(ZoneId /*zone*/, ZoneNeed /*need*/) noexcept {}

@@ -143,7 +143,7 @@ class Residency {
   void freeze(bool frozen) noexcept { frozen_ = frozen; }
   bool frozen() const noexcept { return frozen_; }
 
-  // For the order: a cycle begins, and a zone is wanted that was not before.
+  // For the order: a cycle begins, and a zone is needed that was not before.
   bool has_order() const noexcept { return order_ != nullptr; }
   void begin_cycle(const EvictionMoment& moment) noexcept;
   void request(ZoneId zone) noexcept {

@@ -214,13 +214,14 @@ TEST_F(Keeper, HoldsTheLimitUnderRandomWishes) {
 // Likely zones: of 4 slots each two fit; along the way 1, 2, 3 the sooner is worth more.
 class LikelyZones : public Keeper {
  protected:
-  void keep(std::vector<ZoneId> wanted, std::size_t useful, bool sure) {
+  void keep(std::vector<ZoneId> wanted, std::size_t useful, bool sure,
+            std::size_t due = ZoneKeeper::kMaxWanted) {
     now += kSecond;
     loader->advance_to(now);
     std::vector<LoadResult> loads;
     while (const auto load = loader->poll()) loads.push_back(*load);
     keeper->collect(now, loads);
-    keeper->keep(now, {wanted, useful, useful, useful, true, &foresight, sure});
+    keeper->keep(now, {wanted, useful, useful, useful, true, &foresight, sure, due});
   }
   void hold(ZoneId zone) {
     step({zone});
@@ -251,6 +252,21 @@ TEST_F(LikelyZones, TakeTheRoomOfWhatIsWorthLeastAlthoughAnotherIsColder) {
   foresight.follow(std::vector<ZoneId>{1, 3, 2}, kNoZone, 0, nullptr);
   keep({0, 1, 3, 2}, 1, true);
   EXPECT_EQ(taken(), (Log{"evicted 2", "load_started 1"}));
+}
+
+// 1 is due, 2 is not: 2 takes free room, and leaves 5 where it is.
+TEST_F(LikelyZones, TakeFreeRoomOnlyUntilTheyAreDue) {
+  make(12, {});
+  hold(5);
+  hold(0);
+  foresight.follow(std::vector<ZoneId>{1, 2}, kNoZone, 0, nullptr);
+  const std::vector<ZoneId> wanted{0, 1, 2};
+  for (int cycle = 0; cycle < 3; ++cycle) {
+    keep(wanted, 1, true, 2);
+  }
+  EXPECT_EQ(taken(), (Log{"load_started 1", "load_done 1"}));
+  keep(wanted, 1, true, 3);
+  EXPECT_EQ(taken(), (Log{"evicted 5", "load_started 2"}));
 }
 
 TEST_F(LikelyZones, AreGivenUpWhenTheyDoNotCome) {
