@@ -338,7 +338,7 @@ void run_tune(const TuneArguments& arguments) {
   }
   if (!arguments.preview.empty()) {
     const MapDrawing ground = drawing_of(map);
-    const report::Report page = make_tune_page({.folder = arguments.folder,
+    const report::Report page = tune::make_tune_page({.folder = arguments.folder,
                                                 .budget = arguments.options.budget,
                                                 .before = &before,
                                                 .tuned = &tuned,

@@ -158,6 +158,7 @@ class Tuner {
         const std::optional<Changed> after = changed(result_.layout, signatures_, change);
         if (!after) continue;
         Trial trial = trial_of(change, *after);
+        if (change.kind == Change::Kind::kMerge && trial.smallest.bytes > now_.smallest.bytes) continue;
         if (fits && !feasible(trial.smallest)) continue;
         tried.trials.push_back(std::move(trial));
       }
