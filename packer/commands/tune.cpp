@@ -339,10 +339,10 @@ void run_tune(const TuneArguments& arguments) {
   if (!arguments.preview.empty()) {
     const MapDrawing ground = drawing_of(map);
     const report::Report page = tune::make_tune_page({.folder = arguments.folder,
-                                                .budget = arguments.options.budget,
-                                                .before = &before,
-                                                .tuned = &tuned,
-                                                .ground = &ground});
+                                                      .budget = arguments.options.budget,
+                                                      .before = &before,
+                                                      .tuned = &tuned,
+                                                      .ground = &ground});
     if (const auto written = report::write_report(arguments.preview, page); !written) {
       throw std::runtime_error(written.error().message);
     }
@@ -417,7 +417,7 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   add_size_option(*command, "--load-cost", options.load_bytes,
-                  "bytes that a load counts besides those it reads; default 64KiB");
+                  "bytes that a load counts besides those it reads; default 256KiB");
   add_report_option(*command, arguments->preview,
                     "draw the zones before and after: .html, .svg or .png", "--preview");
   arguments->json.add_option(*command);

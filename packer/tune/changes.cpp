@@ -30,12 +30,27 @@ Extent extent_of(const Polygon& polygon, const Axis& axis) {
   return extent;
 }
 
-bool crosses_a_portal(const Layout& layout, std::uint32_t zone, const Axis& axis, double place) {
+// A cut may part a passage over open ground, but no door, and leaves no narrow rest of any.
+bool spoils_a_portal(const Layout& layout, std::uint32_t zone, const Axis& axis, double place) {
   return std::ranges::any_of(layout.portals, [&](const PlannedPortal& portal) {
     if (portal.zone_a != zone && portal.zone_b != zone) return false;
     const double p = axis.at(portal.segment.p) - place, q = axis.at(portal.segment.q) - place;
-    return p * q <= 0 || std::min(std::abs(p), std::abs(q)) < kPortalMargin_m;
+    const double near = std::min(std::abs(p), std::abs(q));
+    if (p * q > 0) return near < kPortalMargin_m;
+    const double width = distance_m(portal.segment.p, portal.segment.q);
+    const double share = std::abs(p) + std::abs(q) > 0 ? near / (std::abs(p) + std::abs(q)) : 0;
+    return width < kOpenGround_m || share * width < kLeastSeam_m;
   });
+}
+
+// The two sides of a portal that a cut parts, in the order of the axis.
+std::pair<Segment2, Segment2> parted(const Segment2& portal, const Axis& axis, double place) {
+  const double p = axis.at(portal.p) - place, q = axis.at(portal.q) - place;
+  const double t = p / (p - q);
+  const Point2 at{portal.p.x_m + t * (portal.q.x_m - portal.p.x_m),
+                  portal.p.y_m + t * (portal.q.y_m - portal.p.y_m)};
+  const Segment2 first{portal.p, at}, second{at, portal.q};
+  return p < 0 ? std::pair(first, second) : std::pair(second, first);
 }
 
 PackCost estimated(const Layout& layout, std::span<const Signature> signatures,
@@ -84,6 +99,14 @@ std::optional<std::vector<std::string>> part_names(const Layout& layout, const s
   return names;
 }
 
+// NAME.1, NAME.2 and so on, as a build numbers the pieces of a portal.
+std::string fresh_name(const std::string& portal, std::set<std::string>& taken) {
+  for (std::size_t number = 1;; ++number) {
+    std::string name = portal + "." + std::to_string(number);
+    if (taken.insert(name).second) return name;
+  }
+}
+
 std::optional<Changed> split(const Layout& layout, std::span<const Signature> signatures,
                              const Change& change) {
   const TunedZone& whole = layout.zones[change.zone_a];
@@ -122,13 +145,32 @@ std::optional<Changed> split(const Layout& layout, std::span<const Signature> si
     result.fresh.push_back(static_cast<std::uint32_t>(out.zones.size()));
     out.zones.push_back(std::move(zone));
   }
-  for (PlannedPortal& portal : out.portals) {
-    for (std::uint32_t* const end : {&portal.zone_a, &portal.zone_b}) {
-      if (*end != change.zone_a) continue;
-      *end = result.fresh[change.axis.at(portal.segment.p) < change.place_m ? 0 : 1];
-    }
-  }
   std::set<std::string> taken = portal_names_in(layout);
+  std::vector<PlannedPortal> portals;
+  const auto attach = [&](PlannedPortal portal, const Segment2& segment, std::size_t part) {
+    (portal.zone_a == change.zone_a ? portal.zone_a : portal.zone_b) = result.fresh[part];
+    portal.segment = segment;
+    portals.push_back(std::move(portal));
+  };
+  for (const PlannedPortal& portal : layout.portals) {
+    if (portal.zone_a != change.zone_a && portal.zone_b != change.zone_a) {
+      portals.push_back(portal);
+      continue;
+    }
+    const double p = change.axis.at(portal.segment.p) - change.place_m;
+    const double q = change.axis.at(portal.segment.q) - change.place_m;
+    if (p * q > 0) {
+      attach(portal, portal.segment, p < 0 ? 0 : 1);
+      continue;
+    }
+    const auto [below, above] = parted(portal.segment, change.axis, change.place_m);
+    PlannedPortal piece = portal;
+    piece.name = fresh_name(portal.name, taken);
+    attach(piece, below, 0);
+    piece.name = fresh_name(portal.name, taken);
+    attach(piece, above, 1);
+  }
+  out.portals = std::move(portals);
   for (const Segment2& seam : *seams) {
     out.portals.push_back({fresh_portal_name((*names)[0], (*names)[1], taken), result.fresh[0],
                            result.fresh[1], seam});
@@ -210,7 +252,7 @@ std::vector<Change> splits_of(const Layout& layout, std::span<const Signature> s
       const double from = std::max(*std::prev(above), first), to = std::min(*above, last);
       if (to - from < 2 * kBorderTolerance_m) continue;
       const double place = place_between(whole.zone.polygon, axis, from, to);
-      if (place <= before || crosses_a_portal(layout, zone, axis, place)) continue;
+      if (place <= before || spoils_a_portal(layout, zone, axis, place)) continue;
       before = place;
       changes.push_back({Change::Kind::kSplit, zone, zone, axis, place});
     }

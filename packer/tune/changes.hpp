@@ -26,13 +26,15 @@ struct Change {
 inline constexpr double kLeastPart_m = 2.5;
 // A cut stays this far off the ends of portals.
 inline constexpr double kPortalMargin_m = 0.3;
+// A portal this wide is no door: a cut may part it.
+inline constexpr double kOpenGround_m = 3;
 // Parts meet in at least one portal this wide.
 inline constexpr double kLeastSeam_m = 0.8;
 // Walls between zones that become one, at most.
 inline constexpr double kThickestWall_m = 0.2;
 
 // Straight cuts through a zone, at most `most` along its length and as many across: between
-// signatures, off the portals, with signatures on both sides.
+// signatures, through no door, with signatures on both sides.
 std::vector<Change> splits_of(const Layout& layout, std::span<const Signature> signatures,
                               std::uint32_t zone, std::size_t most);
 

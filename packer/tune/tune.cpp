@@ -158,8 +158,9 @@ class Tuner {
         const std::optional<Changed> after = changed(result_.layout, signatures_, change);
         if (!after) continue;
         Trial trial = trial_of(change, *after);
-        if (change.kind == Change::Kind::kMerge && trial.smallest.bytes > now_.smallest.bytes) continue;
         if (fits && !feasible(trial.smallest)) continue;
+        const bool merges = change.kind == Change::Kind::kMerge;
+        if (merges && trial.smallest.bytes > now_.smallest.bytes) continue;
         tried.trials.push_back(std::move(trial));
       }
       if (!tried.trials.empty()) families.push_back(std::move(tried));
@@ -324,7 +325,10 @@ class Tuner {
       Trial exact;
       std::optional<Changed> after = packed(*choice.trial, judgement, exact);
       if (!after) continue;
-      if (!feasible(exact.smallest) || !pays(exact.drives) || !holds(judge({{exact}}, exact))) {
+      const bool larger =
+          exact.change.kind == Change::Kind::kMerge && exact.smallest.bytes > now_.smallest.bytes;
+      if (larger || !feasible(exact.smallest) || !pays(exact.drives) ||
+          !holds(judge({{exact}}, exact))) {
         rejected_[key] = step_of(exact, judgement, "saves too little once it is packed");
         continue;
       }

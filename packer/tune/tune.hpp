@@ -22,6 +22,7 @@
 //   - the drives it is chosen on cost kLeastGain less,
 //   - the drives held out cost less in sum, and no more of them lose than win, and
 //   - both hold with its zones packed as a build packs them.
+// Zones become one only where that does not raise the smallest budget.
 // As long as the smallest budget is above the budget, the change that lowers it most is made; what
 // it does to the drives is only reported.
 namespace zonepack::packer::tune {
@@ -30,7 +31,7 @@ inline constexpr double kLeastGain = 0.005;  // of what the drives cost before
 
 struct Options {
   ByteCount budget = 0;
-  ByteCount load_bytes = 64 * kKiB;
+  ByteCount load_bytes = 256 * kKiB;
   std::size_t most_changes = 20;
   std::size_t cuts = 24;  // of a zone, along its length, and as many across
 };
