@@ -243,6 +243,12 @@ void print(const TuneArguments& arguments, const Tuned& tuned, std::ostream& out
     out << "What each change saves, in the order made, with " << size_text(arguments.options.budget)
         << ":\n";
     print_steps(tuned.made, false, out);
+    const auto for_budget = std::ranges::count(tuned.made, true, &Step::for_budget);
+    if (for_budget > 0) {
+      out << "The first "
+          << (for_budget == 1 ? std::string("change") : std::to_string(for_budget) + " changes")
+          << " brought the map into the budget, whatever the drives said.\n";
+    }
     out << "\n";
   }
   if (!tuned.rejected.empty()) {

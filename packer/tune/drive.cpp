@@ -76,13 +76,16 @@ bool agree(const DrivePose& a, const DrivePose& b) {
   return distance_m(a.p_map, b.p_map) <= kFixSpread_m + kFastest_m_s * std::max(0.0, b.t_s - a.t_s);
 }
 
-// A fix stays that agrees with the last one kept, or with the next.
+// A fix stays that agrees with the last one kept, or with one of the next two.
 void leave_out_wrong_fixes(Drive& drive) {
   std::vector<DrivePose> kept;
   for (std::size_t i = 0; i < drive.poses.size(); ++i) {
     const DrivePose& pose = drive.poses[i];
     const bool with_last = !kept.empty() && agree(kept.back(), pose);
-    const bool with_next = i + 1 < drive.poses.size() && agree(pose, drive.poses[i + 1]);
+    bool with_next = false;
+    for (std::size_t next = i + 1; next < drive.poses.size() && next <= i + 2; ++next) {
+      with_next = with_next || agree(pose, drive.poses[next]);
+    }
     if (with_last || with_next || drive.poses.size() == 1) {
       kept.push_back(pose);
     } else {
