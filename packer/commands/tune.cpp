@@ -54,9 +54,18 @@ struct TuneArguments {
   PayloadMask payload = kDefaultPayload;
   std::vector<std::string> pins;
   std::vector<std::string> layers;
+  std::optional<ByteCount> load_bytes;
   tune::Options options;
   JsonOutput json;
 };
+
+// What a load reads on average over the zones: a measure of the map's own, whether its zones hold
+// kilobytes or megabytes.
+ByteCount mean_zone(const tune::Layout& layout) {
+  ByteCount sum = 0;
+  for (const tune::TunedZone& zone : layout.zones) sum += zone.cost.stored;
+  return sum / layout.zones.size();
+}
 
 std::vector<Drive> read_drives(const TuneArguments& arguments, const tune::Layout& layout) {
   std::vector<Drive> drives;
@@ -266,7 +275,7 @@ void print(const TuneArguments& arguments, const Tuned& tuned, std::ostream& out
   table.print(out);
 }
 
-void write_text(const std::string& path, const std::string& text) {
+void write_zones(const std::string& path, const std::string& text) {
   if (const Result<void> written = write_file_atomically(path, text); !written) {
     throw std::runtime_error(cannot_write(path, written.error()).message);
   }
@@ -315,12 +324,13 @@ void run_tune(const TuneArguments& arguments) {
   for (const std::string& warning : warnings) text << "warning: " << warning << "\n";
   text << "\n";
 
+  tune::Options options = arguments.options;
+  options.load_bytes = arguments.load_bytes.value_or(mean_zone(held.layout));
   const tune::PackScale scale(map, payload);
   const tune::Layout before = held.layout;
   Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
   const Tuned tuned = tune::tune(
-      std::move(held.layout), std::move(tracks), drives.size() == 1, held.signatures,
-      arguments.options,
+      std::move(held.layout), std::move(tracks), drives.size() == 1, held.signatures, options,
       [&](const tune::TunedZone& zone) { return scale.weigh(zone, held.signatures); },
       [](const tune::Layout& layout) {
         const ZoneFile file = parse_zone_file(zones_geojson(layout.plan()));
@@ -330,7 +340,7 @@ void run_tune(const TuneArguments& arguments) {
       progress);
   if (tuned.after.smallest.bytes > arguments.options.budget) refuse_budget(arguments, tuned);
   print(arguments, tuned, text);
-  write_text(arguments.out, zones_geojson(tuned.layout.plan()));
+  write_zones(arguments.out, zones_geojson(tuned.layout.plan()));
   text << "\n" << arguments.out << ": ";
   if (tuned.made.empty()) {
     text << "the zones as they are; no change helps\n";
@@ -362,7 +372,7 @@ void run_tune(const TuneArguments& arguments) {
   json["map"] = arguments.folder;
   json["out"] = arguments.out;
   json["budget_bytes"] = arguments.options.budget;
-  json["load_bytes"] = arguments.options.load_bytes;
+  json["load_bytes"] = options.load_bytes;
   json["payload"] = payload_text(payload);
   json["drives"] = ordered_json::array();
   for (const Drive& drive : drives) {
@@ -422,8 +432,10 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       ->type_name("N")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  add_size_option(*command, "--load-cost", options.load_bytes,
-                  "bytes that a load counts besides those it reads; default 256KiB");
+  CLI::Option* const load_cost = add_size_option(
+      *command, "--load-cost", options.load_bytes,
+      "bytes that a load counts besides those it reads; default: as many as a load of this "
+      "map reads on average over its zones");
   add_report_option(*command, arguments->preview,
                     "draw the zones before and after: .html, .svg or .png", "--preview");
   arguments->json.add_option(*command);
@@ -436,9 +448,10 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       "second half. While the map needs more than --budget, zones are cut until it fits.");
   add_examples(*command,
                {"zonepack tune map --drives drive.txt --budget 2MiB --out tuned.geojson",
-                "zonepack tune map --drives drive.txt --budget 1MiB --out tuned.geojson \\\n"
-                "  --preview tuned.html --json tuned.json"});
-  command->callback([arguments, &exit_code] {
+                "zonepack tune map --drives drive.txt --budget 1MiB --out tuned.geojson --preview "
+                "tuned.html"});
+  command->callback([arguments, load_cost, &exit_code] {
+    if (load_cost->count() > 0) arguments->load_bytes = arguments->options.load_bytes;
     require_writable(arguments->out);
     require_writable(arguments->preview);
     arguments->json.require_writable();

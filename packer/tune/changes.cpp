@@ -179,7 +179,7 @@ std::optional<Changed> split(const Layout& layout, std::span<const Signature> si
 }
 
 // "a", "b" or "a + b".
-std::string both(const std::string& a, const std::string& b) {
+std::string both_labels(const std::string& a, const std::string& b) {
   if (a.empty() || a == b) return b;
   return b.empty() ? a : a + " + " + b;
 }
@@ -199,7 +199,7 @@ std::optional<Changed> merge(const Layout& layout, std::span<const Signature> si
   TunedZone zone = a.members.size() >= b.members.size() ? a : b;  // keeps the larger one's type
   zone.zone.name = name;
   zone.zone.parent.clear();
-  zone.zone.label = both((in_order ? a : b).zone.label, (in_order ? b : a).zone.label);
+  zone.zone.label = both_labels((in_order ? a : b).zone.label, (in_order ? b : a).zone.label);
   zone.zone.polygon = std::move(*polygon);
   zone.changed = true;
   zone.members.clear();

@@ -31,7 +31,7 @@ inline constexpr double kLeastGain = 0.005;  // of what the drives cost before
 
 struct Options {
   ByteCount budget = 0;
-  ByteCount load_bytes = 256 * kKiB;
+  ByteCount load_bytes = 0;
   std::size_t most_changes = 20;
   std::size_t cuts = 24;  // of a zone, along its length, and as many across
 };

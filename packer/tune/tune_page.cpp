@@ -24,8 +24,8 @@ std::string listed_names(const std::vector<std::string>& names) {
 }
 
 // What a zone takes, as a share of the largest pair: pale to strong.
-report::FloorPlan plan_of(const Layout& layout, const std::vector<std::string>& marked,
-                          const TunePage& page) {
+report::FloorPlan floor_plan_of(const Layout& layout, const std::vector<std::string>& marked,
+                                const TunePage& page) {
   report::FloorPlan plan;
   std::size_t index = 0;
   for (const TunedZone& zone : layout.zones) {
@@ -142,9 +142,9 @@ report::Report make_tune_page(const TunePage& page) {
   const std::string caption =
       "Numbers are MiB charged; orange bars are portals, dots are places of the drives. ";
   out.figures.push_back({"Before", caption + "Coloured: zones that are changed.",
-                         draw_floor_plan(plan_of(*page.before, from, page))});
+                         draw_floor_plan(floor_plan_of(*page.before, from, page))});
   out.figures.push_back({"After", caption + "Coloured: zones that are new.",
-                         draw_floor_plan(plan_of(tuned.layout, into, page))});
+                         draw_floor_plan(floor_plan_of(tuned.layout, into, page))});
   out.tables.push_back(steps_table(
       "Changes", "In the order made, with what each saves; less than 0 is what it costs.",
       tuned.made, false));

@@ -9,7 +9,7 @@ namespace zonepack::packer::tune {
 namespace {
 
 // B 10 m, A 10 m, C 40 m in a row.
-GroundPlan row() {
+GroundPlan three_rooms() {
   GroundPlan plan;
   plan.add("B", -20, -10);
   plan.add("A", -10, 0);
@@ -20,7 +20,7 @@ GroundPlan row() {
 }
 
 TEST(Layout, SmallestBudgetIsThatOfTheLargestPairOfNeighbours) {
-  GroundPlan plan = row();
+  GroundPlan plan = three_rooms();
   const Smallest smallest = smallest_of(plan.layout);
   EXPECT_EQ(smallest.pair_slots, 50u);  // A and C
   EXPECT_EQ(smallest.pairs, 1u);
@@ -32,7 +32,7 @@ TEST(Layout, SmallestBudgetIsThatOfTheLargestPairOfNeighbours) {
 }
 
 TEST(Layout, GivesUpTheZoneUsedLeastRecently) {
-  const GroundPlan plan = row();
+  const GroundPlan plan = three_rooms();
   // B A C A B A C: with 50 slots C pushes out B, and B, at the end of A's visit, C.
   const Track track = plan.drive("d", {-15, 5, -15, 5});
   ASSERT_EQ(track.visits.size(), 7u);
@@ -44,14 +44,14 @@ TEST(Layout, GivesUpTheZoneUsedLeastRecently) {
 }
 
 TEST(Layout, PinnedZonesAreNeverLoaded) {
-  GroundPlan plan = row();
+  GroundPlan plan = three_rooms();
   plan.layout.zones[2].pinned = true;
   const Track track = plan.drive("d", {-15, 5, -15, 5});
   EXPECT_EQ(cost_of(track.visits, plan.layout, 20).loads, 2u);  // B and A
 }
 
 TEST(Layout, FixedBytesGrowWithNamesVerticesAndPortals) {
-  GroundPlan plan = row();
+  GroundPlan plan = three_rooms();
   const ByteCount before = plan.layout.fixed_bytes();
   plan.add("D", 40, 50);
   plan.join(2, 3, 40);
