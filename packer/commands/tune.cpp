@@ -44,7 +44,8 @@ using tune::Total;
 using tune::Track;
 using tune::Tuned;
 
-constexpr double kMuchOutside = 0.1;  // of a drive's places in no zone, worth a warning
+constexpr double kMostMetres = 500'000;  // of all drives: 320 MB of places
+constexpr double kMuchOutside = 0.1;     // of a drive's places in no zone, worth a warning
 
 struct TuneArguments {
   std::string folder;
@@ -69,8 +70,17 @@ ByteCount mean_zone(const tune::Layout& layout) {
 
 std::vector<Drive> read_drives(const TuneArguments& arguments, const tune::Layout& layout) {
   std::vector<Drive> drives;
+  double metres = 0;
   for (const std::string& file : arguments.drives) {
     Drive drive = tune::read_drive(file);
+    for (std::size_t i = 1; i < drive.poses.size(); ++i) {
+      metres += distance_m(drive.poses[i - 1].p_map, drive.poses[i].p_map);
+    }
+    if (metres > kMostMetres) {
+      throw std::runtime_error(file + ": the drives are longer than " +
+                               report::format_fixed(kMostMetres / 1000, 0) +
+                               " km up to here; give fewer, or a path in metres");
+    }
     for (const Drive& other : drives) {
       const bool same = std::ranges::equal(other.poses, drive.poses,
                                            [](const tune::DrivePose& a, const tune::DrivePose& b) {
@@ -365,8 +375,9 @@ void run_tune(const TuneArguments& arguments) {
     text << arguments.preview << ": the zones before and after as a picture\n";
   }
   const std::string command = build_command(arguments, manifest);
-  text << "Next: pack them, with the file that " << arguments.folder
-       << " was packed from as map.db:\n  " << command << "\n";
+  const bool placed = flatbuffers::GetString(manifest.provenance()->source_kind()) == "stella";
+  text << "Next: pack them, with what " << arguments.folder << " was packed from as map.db"
+       << (placed ? ", and the options that placed it" : "") << ":\n  " << command << "\n";
 
   ordered_json json;
   json["map"] = arguments.folder;

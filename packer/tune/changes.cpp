@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "packer/zones/shared_border.hpp"
+#include "packer/zones/slabs.hpp"
 #include "packer/zones/zone_file.hpp"
 #include "platform/base/natural_order.hpp"
 #include "runtime/pack_format/limits.hpp"
@@ -250,7 +251,7 @@ std::vector<Change> splits_of(const Layout& layout, std::span<const Signature> s
       const auto above = std::ranges::upper_bound(stops, wanted);
       if (above == stops.begin() || above == stops.end()) continue;
       const double from = std::max(*std::prev(above), first), to = std::min(*above, last);
-      if (to - from < 2 * kBorderTolerance_m) continue;
+      if (to - from < kOnePlace_m) continue;
       const double place = place_between(whole.zone.polygon, axis, from, to);
       if (place <= before || spoils_a_portal(layout, zone, axis, place)) continue;
       before = place;
