@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "platform/base/file_kind.hpp"
+#include "platform/base/utf8.hpp"
 
 namespace zonepack::packer::tune {
 namespace {
@@ -99,6 +100,13 @@ void leave_out_wrong_fixes(Drive& drive) {
   throw std::runtime_error(file + ", line " + std::to_string(line) + ": " + problem);
 }
 
+// Of a line for a message, without half a character at its end.
+std::string start_of(std::string_view line) {
+  std::size_t end = std::min<std::size_t>(line.size(), 60);
+  while (end > 0 && end < line.size() && continues_utf8(line[end])) --end;
+  return std::string(line.substr(0, end));
+}
+
 std::vector<Row> rows_of(const std::string& text, const std::string& file) {
   std::vector<Row> rows;
   std::istringstream in(text);
@@ -115,7 +123,8 @@ std::vector<Row> rows_of(const std::string& text, const std::string& file) {
       continue;
     }
     if (!row) {
-      const std::string found(words.substr(0, 60));
+      if (!is_utf8(words)) refuse(file, number, std::string("is no text; ") + kExpected);
+      const std::string found = start_of(words);
       refuse(file, number,
              words.front() == '('
                  ? "'" + found + "' is of a CAN log, which holds turns of wheels and no places; " +

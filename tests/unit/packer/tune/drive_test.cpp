@@ -56,6 +56,7 @@ TEST(Drive, NamesTheLineOfWhatIsNeither) {
   EXPECT_NE(refusal("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n").find("line 2: expected stamps that"),
             std::string::npos);
   EXPECT_NE(refusal("1 nan 0 0 0 0 0 1\n2 0 0 0 0 nan 0 1\n").find("line 2"), std::string::npos);
+  EXPECT_NE(refusal("1 0 0 0 0 0 0 1\n\xFF\xFE\n").find("line 2: is no text"), std::string::npos);
   EXPECT_NE(refusal("# nothing\n").find("holds no pose"), std::string::npos);
 }
 
