@@ -22,6 +22,7 @@
 #include "packer/console/words.hpp"
 #include "packer/decode/map_reader.hpp"
 #include "packer/preview/ground.hpp"
+#include "packer/tune/given_drives.hpp"
 #include "packer/tune/held_map.hpp"
 #include "packer/tune/tune.hpp"
 #include "packer/tune/tune_page.hpp"
@@ -38,14 +39,10 @@ namespace zonepack::packer {
 namespace {
 
 using nlohmann::ordered_json;
-using tune::Drive;
 using tune::Step;
 using tune::Total;
 using tune::Track;
 using tune::Tuned;
-
-constexpr double kMostMetres = 500'000;  // of all drives: 320 MB of places
-constexpr double kMuchOutside = 0.1;     // of a drive's places in no zone, worth a warning
 
 struct TuneArguments {
   std::string folder;
@@ -66,87 +63,6 @@ ByteCount mean_zone(const tune::Layout& layout) {
   ByteCount sum = 0;
   for (const tune::TunedZone& zone : layout.zones) sum += zone.cost.stored;
   return sum / layout.zones.size();
-}
-
-std::vector<Drive> read_drives(const TuneArguments& arguments, const tune::Layout& layout) {
-  std::vector<Drive> drives;
-  double metres = 0;
-  for (const std::string& file : arguments.drives) {
-    Drive drive = tune::read_drive(file);
-    for (std::size_t i = 1; i < drive.poses.size(); ++i) {
-      metres += distance_m(drive.poses[i - 1].p_map, drive.poses[i].p_map);
-    }
-    if (metres > kMostMetres) {
-      throw std::runtime_error(file + ": the drives are longer than " +
-                               report::format_fixed(kMostMetres / 1000, 0) +
-                               " km up to here; give fewer, or a path in metres");
-    }
-    for (const Drive& other : drives) {
-      const bool same = std::ranges::equal(other.poses, drive.poses,
-                                           [](const tune::DrivePose& a, const tune::DrivePose& b) {
-                                             return a.t_s == b.t_s && a.p_map == b.p_map;
-                                           });
-      if (!same) continue;
-      throw std::runtime_error(file + ": is the same drive as " + other.file +
-                               ", so that changes would be judged on what they were chosen on; "
-                               "give it once");
-    }
-    const bool floors = std::ranges::any_of(layout.zones, [](const tune::TunedZone& zone) {
-      return zone.zone.z_min_m || zone.zone.z_max_m;
-    });
-    if (drive.fixes && floors) {
-      throw std::runtime_error(file + ": holds fixes, which have no height, but zones of " +
-                               arguments.folder +
-                               " lie above each other; give a path, stamp x y z qx qy qz qw");
-    }
-    drives.push_back(std::move(drive));
-  }
-  return drives;
-}
-
-// One track a drive; of a single drive, its halves.
-std::vector<Track> tracks_of(const TuneArguments& arguments, const std::vector<Drive>& drives,
-                             const tune::Layout& layout, std::vector<std::string>& warnings) {
-  std::vector<PlannedZone> zones;
-  for (const tune::TunedZone& zone : layout.zones) zones.push_back(zone.zone);
-  std::vector<Track> tracks;
-  for (const Drive& drive : drives) {
-    Track track = track_of(drive, drive.file);
-    locate(track, zones);
-    if (track.visits.empty()) {
-      const Point2 p = drive.poses.front().p_map;
-      throw std::runtime_error(drive.file + ": is never in a zone of " + arguments.folder +
-                               "; it begins at " + point_text(p) +
-                               ", expected metres of the map's frame");
-    }
-    const auto outside = std::ranges::count(track.places, Partition::kNone, &tune::Place::zone);
-    if (static_cast<double>(outside) > kMuchOutside * static_cast<double>(track.places.size())) {
-      warnings.push_back(
-          drive.file + ": " +
-          std::to_string(100 * static_cast<std::size_t>(outside) / track.places.size()) +
-          " % of it lie in no zone; is it of this building, in the map's frame?");
-    }
-    if (drive.left_out > 0) {
-      warnings.push_back(drive.file + ": " + counted(drive.left_out, "fix", "fixes") +
-                         " left out that are metres off those before and after");
-    }
-    tracks.push_back(std::move(track));
-  }
-  if (drives.size() > 1) return tracks;
-  const std::vector<Drive> halves = halves_of(drives.front());
-  tracks.clear();
-  for (std::size_t i = 0; i < halves.size(); ++i) {
-    tracks.push_back(
-        track_of(halves[i], drives.front().file + (i == 0 ? ", first half" : ", second half")));
-    locate(tracks.back(), zones);
-    if (tracks.back().visits.size() < 2) {
-      throw std::runtime_error(
-          drives.front().file + ": its " + (i == 0 ? "first" : "second") +
-          " half enters no second zone, so it cannot judge what the other half suggests; give "
-          "longer or more drives");
-    }
-  }
-  return tracks;
 }
 
 void require_layers(const tune::Layout& layout, const std::vector<std::string>& layers,
@@ -315,23 +231,23 @@ void run_tune(const TuneArguments& arguments) {
   tune::HeldMap held =
       tune::read_held_map(map, arguments.folder, payload, pinned, arguments.layers);
   require_layers(held.layout, arguments.layers, arguments.folder);
-  std::vector<std::string> warnings;
-  const std::vector<Drive> drives = read_drives(arguments, held.layout);
-  std::vector<Track> tracks = tracks_of(arguments, drives, held.layout, warnings);
+  tune::GivenDrives given =
+      tune::read_given_drives(arguments.drives, held.layout, arguments.folder);
+  const std::vector<tune::Drive>& drives = given.drives;
   std::ostream& text = arguments.json.text();
   double metres = 0;
   std::size_t visits = 0;
-  for (const Track& track : tracks) {
+  for (const Track& track : given.tracks) {
     metres += track.metres;
     visits += track.visits.size();
   }
   text << arguments.folder << ": " << counted(held.layout.zones.size(), "zone") << ", "
        << counted(held.signatures.size(), "signature") << "; " << counted(drives.size(), "drive")
        << ", " << report::format_fixed(metres, 0) << " m, " << counted(visits, "zone") << " entered"
-       << (drives.size() == 1 ? "; the first half chooses, the second half judges"
-                              : "; each drive judges what the others choose")
+       << (given.halves ? "; the first half chooses, the second half judges"
+                        : "; each drive judges what the others choose")
        << "\n";
-  for (const std::string& warning : warnings) text << "warning: " << warning << "\n";
+  for (const std::string& warning : given.warnings) text << "warning: " << warning << "\n";
   text << "\n";
 
   tune::Options options = arguments.options;
@@ -340,7 +256,7 @@ void run_tune(const TuneArguments& arguments) {
   const tune::Layout before = held.layout;
   Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
   const Tuned tuned = tune::tune(
-      std::move(held.layout), std::move(tracks), drives.size() == 1, held.signatures, options,
+      std::move(held.layout), std::move(given.tracks), given.halves, held.signatures, options,
       [&](const tune::TunedZone& zone) { return scale.weigh(zone, held.signatures); },
       [](const tune::Layout& layout) {
         const ZoneFile file = parse_zone_file(zones_geojson(layout.plan()));
@@ -386,7 +302,7 @@ void run_tune(const TuneArguments& arguments) {
   json["load_bytes"] = options.load_bytes;
   json["payload"] = payload_text(payload);
   json["drives"] = ordered_json::array();
-  for (const Drive& drive : drives) {
+  for (const tune::Drive& drive : drives) {
     json["drives"].push_back({{"file", drive.file},
                               {"kind", drive.fixes ? "fixes" : "path"},
                               {"poses", drive.poses.size()},
@@ -400,7 +316,7 @@ void run_tune(const TuneArguments& arguments) {
   for (const Step& step : tuned.rejected) json["not_made"].push_back(to_json(step, true));
   json["at_limit"] = tuned.at_limit;
   if (!arguments.preview.empty()) json["picture"] = arguments.preview;
-  json["warnings"] = warnings;
+  json["warnings"] = given.warnings;
   json["next"] = command;
   arguments.json.write(json);
 }
