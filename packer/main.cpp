@@ -15,6 +15,7 @@
 #include "packer/commands/prune.hpp"
 #include "packer/commands/report.hpp"
 #include "packer/commands/suggest_zones.hpp"
+#include "packer/commands/tune.hpp"
 #include "packer/commands/update.hpp"
 #include "packer/commands/verify.hpp"
 #include "packer/record/source_kind.hpp"
@@ -48,6 +49,7 @@ int main(int argc, char** argv) {
   zonepack::packer::add_export_command(app, exit_code);
   zonepack::packer::add_outline_command(app, exit_code);
   zonepack::packer::add_suggest_zones_command(app, exit_code);
+  zonepack::packer::add_tune_command(app, exit_code);
   zonepack::packer::add_plan_command(app, exit_code);
   zonepack::packer::add_inspect_command(app, exit_code);
   zonepack::packer::add_verify_command(app, exit_code);

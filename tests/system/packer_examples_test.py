@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: packer_examples_test.py ZONEPACK DATA: every example that a help of zonepack shows works as it stands.
 
-Runs them on the sample database, in a folder where it is called map.db.
+Runs them on the sample database, in a folder where it is called map.db and a drive through it drive.txt.
 """
 import re
 import shutil
@@ -12,8 +12,8 @@ import tempfile
 from pathlib import Path
 
 # Later commands need what the earlier ones write.
-ORDER = ["outline", "suggest-zones", "check-zones", "build", "update", "diff", "log", "plan", "inspect", "verify", "export",
-         "report", "prune"]
+ORDER = ["outline", "suggest-zones", "check-zones", "build", "update", "diff", "log", "plan", "tune", "inspect", "verify",
+         "export", "report", "prune"]
 
 
 def help_of(zonepack, *words):
@@ -38,6 +38,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         shutil.copy(data / "hospital-small.db", Path(folder) / "map.db")
         shutil.copy(data / "zones.geojson", folder)
+        shutil.copy(data / "scenario1_loop/base_groundtruth.txt", Path(folder) / "drive.txt")
         bin_folder = zonepack.parent
         for line in [line for command in ORDER for line in examples.get(command, [])] + examples_in(listed):
             if not line.startswith("zonepack "):

@@ -87,7 +87,10 @@ if(TARGET zonepack AND TARGET zoned)
   add_test(NAME system/suggest_zones
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/suggest_zones_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
-  set_tests_properties(system/suggest_zones PROPERTIES TIMEOUT 600)
+  add_test(NAME system/tune
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/tune_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/suggest_zones system/tune PROPERTIES TIMEOUT 600)
 endif()
 
 # Maps that ask for more memory than the budget: at start, at SIGHUP, and after the refusal.
