@@ -110,8 +110,8 @@ ARROWS = {
     "packer/console": "platform platform/base runtime/pack_format",
     "packer/inspect": "packer/console packer/decode packer/verify platform/base runtime/pack_format/file",
     "packer/suggest": "packer/zones runtime/pack_format",
-    "packer/tune": "packer/build packer/console packer/decode packer/encode packer/outline packer/preview packer/update"
-                   " packer/zones platform/base runtime/pack_format runtime/pack_format/file runtime/report",
+    "packer/tune": "packer/console packer/decode packer/encode packer/outline packer/preview packer/update packer/zones"
+                   " platform platform/base runtime/pack_format runtime/pack_format/file runtime/report",
     "packer/commands": "packer/build packer/console packer/decode packer/export packer/inspect packer/outline"
                        " packer/preview packer/record packer/sources packer/suggest packer/tune packer/update packer/verify packer/zones"
                        " platform platform/base platform/command_line runtime/pack_format runtime/pack_format/file runtime/report",
