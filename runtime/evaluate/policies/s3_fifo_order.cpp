@@ -29,6 +29,10 @@ class S3FifoOrder final : public EvictionOrder {
   }
   void loaded(ZoneId zone, ZoneNeed need) noexcept override {
     Entry& entry = entries_[zone];
+    if (entry.remembered) {  // loaded ahead of any request
+      forget(zone);
+      entry.returns = true;
+    }
     entry.need = need;
     entry.uses = 0;
     entry.candidate = false;

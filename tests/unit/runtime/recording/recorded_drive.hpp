@@ -45,7 +45,7 @@ class RecordedDrive {
              sample_catalog(std::string(ZONEPACK_TEST_DATA) + "/zones.geojson", 3)} {
     RunChoices choices;
     choices.storage_rate = 500'000;
-    terms_ = map_terms(choices, run_.settings);
+    terms_ = map_terms(choices, run_.settings, nullptr);
     terms_.lease_ns = 500'000'000;
     terms_.budget = run_.catalog.smallest().bytes + 5 * kMiB / 2;
   }

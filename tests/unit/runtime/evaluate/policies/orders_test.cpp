@@ -28,12 +28,13 @@ class Orders : public testing::Test {
     memory = std::make_unique<Residency>(needs.size(), limits, order.get());
   }
 
-  // Wants each zone for a moment, one after the other; returns those evicted meanwhile.
-  std::string drive(const std::string& zones) {
+  // Needs each zone for a moment, one after the other, or loads it ahead of that; returns those
+  // evicted meanwhile.
+  std::string drive(const std::string& zones, bool needed = true) {
     std::string evicted;
     for (const char name : zones) {
       const auto zone = static_cast<ZoneId>(name - 'A');
-      memory->request(zone);
+      if (needed) memory->request(zone);
       memory->protect(zone);
       if (!memory->resident(zone)) {
         const auto admitted = memory->admit(
@@ -108,6 +109,17 @@ TEST_F(Orders, S3FifoLetsWhatCameBackOutliveAScan) {
   EXPECT_EQ(drive("H"), "ACD");
 }
 
+// The same with B loaded ahead, before it is needed.
+TEST_F(Orders, S3FifoTakesWhatIsLoadedAheadForWhatCameBack) {
+  hold(make_s3_fifo_order);
+  EXPECT_EQ(drive("ABCDEF"), "");
+  EXPECT_EQ(drive("G"), "AB");
+  EXPECT_EQ(drive("B", false), "C");
+  EXPECT_EQ(drive("ACDE"), "DEFG");
+  EXPECT_EQ(drive("F"), "");
+  EXPECT_EQ(drive("H"), "ACD");
+}
+
 TEST_F(Orders, S3FifoGivesAnotherRoundInTheMainQueueForEachUse) {
   hold(make_s3_fifo_order);
   // All six used twice more: all move to main on the first eviction, uses 2 each, but F is used
@@ -149,8 +161,8 @@ TEST_F(Orders, EveryOrderEvictsOnlyCandidatesWhateverIsProtected) {
     drive("ABCDEF");
     // All but D: Residency requires that the choice is a candidate, D.
     for (const ZoneId zone : {0u, 1u, 2u, 4u, 5u}) {
-      memory->request(zone);
-      memory->request(zone);
+      if (needed) memory->request(zone);
+      if (needed) memory->request(zone);
       memory->protect(zone);
     }
     memory->request(3);
