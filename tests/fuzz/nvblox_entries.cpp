@@ -78,7 +78,7 @@ Bytes database(const packer::BlockCube& cube) {
   return test_support::read_bytes(path);
 }
 
-NvbloxSeeds make_seeds() {
+NvbloxSeeds make_nvblox_seeds() {
   NvbloxSeeds seeds;
   const packer::BlockCube cube = some_cube();
   for (std::size_t i = 0; i < 4; ++i) {
@@ -173,7 +173,7 @@ bool read_layers(ByteSpan bytes) {
 }
 
 const NvbloxSeeds& nvblox_seeds() {
-  static const NvbloxSeeds all = make_seeds();
+  static const NvbloxSeeds all = make_nvblox_seeds();
   return all;
 }
 
