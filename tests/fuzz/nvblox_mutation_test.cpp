@@ -8,7 +8,8 @@
 namespace zonepack::fuzz {
 namespace {
 
-void mutate(const std::vector<packer::Bytes>& seeds, bool (*entry)(ByteSpan), std::size_t rounds) {
+void mutate_nvblox(const std::vector<packer::Bytes>& seeds, bool (*entry)(ByteSpan),
+                   std::size_t rounds) {
   ASSERT_FALSE(seeds.empty());
   for (std::size_t i = 0; i < seeds.size(); ++i) EXPECT_TRUE(entry(seeds[i])) << "seed " << i;
   Mutator mutator(20261127);
@@ -19,12 +20,14 @@ void mutate(const std::vector<packer::Bytes>& seeds, bool (*entry)(ByteSpan), st
 }
 
 TEST(NvbloxMutations, OfBlocksOfVoxelsAreReadInsideTheirBytes) {
-  mutate(nvblox_seeds().voxels, read_voxels, 4'000);
+  mutate_nvblox(nvblox_seeds().voxels, read_voxels, 4'000);
 }
 
-TEST(NvbloxMutations, OfMapsEndInOrder) { mutate(nvblox_seeds().files, read_nvblox, 1'000); }
+TEST(NvbloxMutations, OfMapsEndInOrder) { mutate_nvblox(nvblox_seeds().files, read_nvblox, 1'000); }
 
-TEST(NvbloxMutations, OfLayersEndInOrder) { mutate(nvblox_seeds().layers, read_layers, 20'000); }
+TEST(NvbloxMutations, OfLayersEndInOrder) {
+  mutate_nvblox(nvblox_seeds().layers, read_layers, 20'000);
+}
 
 }  // namespace
 }  // namespace zonepack::fuzz

@@ -161,8 +161,8 @@ TEST_F(Orders, EveryOrderEvictsOnlyCandidatesWhateverIsProtected) {
     drive("ABCDEF");
     // All but D: Residency requires that the choice is a candidate, D.
     for (const ZoneId zone : {0u, 1u, 2u, 4u, 5u}) {
-      if (needed) memory->request(zone);
-      if (needed) memory->request(zone);
+      memory->request(zone);
+      memory->request(zone);
       memory->protect(zone);
     }
     memory->request(3);
