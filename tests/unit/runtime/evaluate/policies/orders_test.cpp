@@ -9,6 +9,8 @@
 
 #include "runtime/evaluate/policies/eviction_names.hpp"
 #include "runtime/memory/residency.hpp"
+#include "runtime/zones/transitions.hpp"
+#include "tests/support/rooms.hpp"
 
 namespace zonepack {
 namespace {
@@ -20,11 +22,14 @@ class Orders : public testing::Test {
   const ResidencyLimits limits{
       .budget = kSlots * 100, .slot_bytes = 100, .largest_pair = {.slots = 5, .signatures = 5}};
   const std::vector<ZoneNeed> needs{{1, 1}, {1, 1}, {1, 1}, {1, 1}, {1, 1}, {1, 1}, {2, 2}, {3, 3}};
+  // Eight rooms that no door joins: no forecast.
+  const ZoneGraph graph{std::vector<GraphZone>(8, {"", testing_support::box(0, 0, 1, 1)}), {}};
+  const Transitions transitions{graph};
   std::unique_ptr<EvictionOrder> order;
   std::unique_ptr<Residency> memory;
 
   void hold(EvictionOrderMaker make) {
-    order = make({needs, kSlots});
+    order = make({needs, kSlots, &transitions});
     memory = std::make_unique<Residency>(needs.size(), limits, order.get());
   }
 
