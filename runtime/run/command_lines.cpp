@@ -59,7 +59,7 @@ Outcome<TimedCommand> parse(const std::string& line,
   if (kind == kKinds.end()) return failure("\"" + word + "\" is not a command");
   out.command.kind = *kind;
   if (zone.empty()) return out;
-  if (*kind == Command::Kind::kRouteHint) return with_route(std::move(out), zone, find_zone);
+  if (*kind == Command::Kind::kRouteHint) return with_route(out, zone, find_zone);
   if (*kind != Command::Kind::kSeek) return failure(word + " takes no zone");
   out.command.zone = find_zone(zone);
   if (out.command.zone == kNoZone) return failure("the map has no zone " + zone);

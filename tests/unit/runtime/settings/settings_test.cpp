@@ -129,9 +129,10 @@ TEST(Settings, AWrongTypeOrRangeSaysWhatIsAllowed) {
            Case{"max_signatures: 0", "max_signatures: -1", "\"-1\" is out of range"},
            Case{"# budget: 24MiB", "budget: 24Mb", "memory.budget: \"24Mb\" is not a size"},
            Case{"# budget: 24MiB", "budget: 0", "memory.budget: \"0\" is not a size"},
-           Case{"[features, scan, grid]", "[features, scam]",
+           Case{"[features, scan, grid, blocks]", "[features, scam]",
                 "memory.payload: \"scam\" is not a payload"},
-           Case{"[features, scan, grid]", "features", "memory.payload: \"features\" where a list"},
+           Case{"[features, scan, grid, blocks]", "features",
+                "memory.payload: \"features\" where a list"},
            Case{"pinned: []", "pinned: L1", "memory.pinned: \"L1\" where a list"},
            Case{"model: differential-positions", "model: ackermann",
                 "\"ackermann\" is not one of: differential-positions, wheel-speeds, twist"},
@@ -173,9 +174,9 @@ TEST(Settings, PathsAreRelativeToTheFile) {
 }
 
 TEST(Settings, ReadsSizesPayloadsPinsAndModels) {
-  const Settings memory =
-      changed("payload: [features, scan, grid]", "payload: [features, image]\n  budget: 24MiB")
-          .settings;
+  const Settings memory = changed("payload: [features, scan, grid, blocks]",
+                                  "payload: [features, image]\n  budget: 24MiB")
+                              .settings;
   EXPECT_EQ(memory.memory.budget, 24 * kMiB);
   EXPECT_EQ(memory.memory.payload.mask,
             kCoreOnly | mask_of(fb::PayloadKind::Features) | mask_of(fb::PayloadKind::Image));
