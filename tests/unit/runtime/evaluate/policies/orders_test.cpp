@@ -197,7 +197,7 @@ TEST_F(Orders, HoldForZonesThatAreLoadedAhead) {
     std::size_t evicted = 0;
     for (int i = 0; i < 5000; ++i) {
       const bool needed = random() % 2 == 0;
-      evicted += drive({1, static_cast<char>('A' + random() % 8)}, needed).size();
+      evicted += drive(std::string(1, static_cast<char>('A' + random() % 8)), needed).size();
     }
     EXPECT_GT(evicted, 1000u);
     EXPECT_LE(memory->charged(), limits.budget);
