@@ -198,7 +198,10 @@ std::uint32_t SourceTable::rows_within(std::uint32_t first, std::uint64_t bytes)
   const std::vector<std::uint32_t>& ends = columns.back().ends;
   const std::uint64_t begin = first == 0 ? 0 : ends[first - 1];
   std::uint32_t count = 0;
-  while (first + count < rows && ends[first + count] - begin + 2 * (count + 1) <= bytes) ++count;
+  while (first + count < rows &&
+         ends[first + count] - begin + 2 * (std::uint64_t{count} + 1) <= bytes) {
+    ++count;
+  }
   return count;
 }
 

@@ -147,6 +147,7 @@ std::vector<std::pair<const Held*, std::uint32_t>> misplaced(
     const std::vector<PlannedZone>& zones, const std::vector<const Held*>& signatures,
     const std::vector<std::uint32_t>& place_of_zone) {
   std::vector<SignaturePlace> places;
+  places.reserve(signatures.size());
   for (const Held* held : signatures) places.push_back(held->place);
   const Partition partition = packer::partition(zones, places, OrphanPolicy::kNearest);
   std::set<SignatureId> orphans;
@@ -184,6 +185,7 @@ void check_places(const fb::Manifest& manifest, const Packs& packs,
     }
   }
   std::vector<const Held*> signatures;
+  signatures.reserve(all.size());
   for (const Held& held : all) signatures.push_back(&held);
   std::vector<std::uint32_t> same(zones.size());
   for (std::uint32_t zone = 0; zone < same.size(); ++zone) same[zone] = zone;

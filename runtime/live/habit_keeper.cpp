@@ -18,7 +18,7 @@ Digest16 origin_of(const LearnedTransitions* given) {
 }
 
 std::shared_ptr<const LearnedTransitions> begun_with(
-    std::shared_ptr<const LearnedTransitions> given, const Digest16& lineage) {
+    const std::shared_ptr<const LearnedTransitions>& given, const Digest16& lineage) {
   auto begun =
       given ? std::make_shared<LearnedTransitions>(*given) : std::make_shared<LearnedTransitions>();
   begun->map_lineage = lineage;
@@ -58,7 +58,7 @@ std::shared_ptr<const LearnedTransitions> go_on_learning(
   return begun;
 }
 
-HabitKeeper::HabitKeeper(std::string folder, std::shared_ptr<const LearnedTransitions> begin)
+HabitKeeper::HabitKeeper(std::string folder, const std::shared_ptr<const LearnedTransitions>& begin)
     : folder_(std::move(folder)) {
   if (begin) learned_ = *begin;
 }

@@ -30,7 +30,7 @@ class HabitKeeper final : public RunObserver {
   static constexpr std::int64_t kPeriod_ns = 60'000'000'000;
 
   // folder: empty: nothing is saved. begin: what the run began with; may be null.
-  HabitKeeper(std::string folder, std::shared_ptr<const LearnedTransitions> begin);
+  HabitKeeper(std::string folder, const std::shared_ptr<const LearnedTransitions>& begin);
 
   void on_event(const Event& event, const MapVersion& map) noexcept override;
 
