@@ -29,11 +29,11 @@ std::shared_ptr<const LearnedTransitions> begun_with(
 }  // namespace
 
 std::shared_ptr<const LearnedTransitions> go_on_learning(
-    const std::string& folder, std::shared_ptr<const LearnedTransitions> given,
+    const std::string& folder, const std::shared_ptr<const LearnedTransitions>& given,
     const Digest16& map_lineage, std::vector<std::string>& notes) {
   if (given && given->map_lineage != map_lineage) return given;  // the map's model refuses it
   const Digest16 origin = origin_of(given.get());
-  auto begun = begun_with(std::move(given), map_lineage);
+  auto begun = begun_with(given, map_lineage);
   if (folder.empty()) {
     notes.push_back("preload.learn: what is learned is lost at the end; set state.folder");
     return begun;

@@ -18,7 +18,7 @@ namespace zonepack {
 // if it went on from the same file on this map, else `given` (null: nothing). A saved file that is
 // not used is named in `notes`.
 std::shared_ptr<const LearnedTransitions> go_on_learning(
-    const std::string& folder, std::shared_ptr<const LearnedTransitions> given,
+    const std::string& folder, const std::shared_ptr<const LearnedTransitions>& given,
     const Digest16& map_lineage, std::vector<std::string>& notes);
 
 // Counts the steps of a live run as its cycle does, from its events, so that they can be saved
