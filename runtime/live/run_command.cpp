@@ -93,8 +93,7 @@ Outcome<void> drive(const RunArguments& arguments, RunInputs& inputs,
   const bool learns = inputs.settings.preload.learn;
   if (learns) {
     std::vector<std::string> notes;
-    inputs.learned =
-        go_on_learning(folder, std::move(inputs.learned), inputs.catalog.lineage, notes);
+    inputs.learned = go_on_learning(folder, inputs.learned, inputs.catalog.lineage, notes);
     for (const std::string& text : notes) warn(text);
   }
   MapTerms terms = map_terms(arguments, inputs);
