@@ -337,8 +337,8 @@ void Cycle::foresee() noexcept {
         static_cast<double>(coming.seconds) - kEarly * load_s - (ahead.empty() ? 0 : before_s);
     std::int64_t from_ns = steps_.since_ns();
     if (saved_s <= 0) {
-      from_ns = kNever_ns;  // its path gives it away early enough
-    } else if (early_s > 0) {
+      from_ns = kNever_ns;                                // its path gives it away early enough
+    } else if (early_s > 0 && transitions_ != nullptr) {  // else nothing is known of times
       from_ns += static_cast<std::int64_t>(early_s * 1e9);
     }
     likely_[likely_count_++] = {coming.zone, from_ns};
