@@ -48,9 +48,10 @@ class ExpectedUse final : public EvictionOrder {
   // The forecast did worse than the least recently used order, which is followed.
   bool follows_shadow() const noexcept { return follows_shadow_; }
 
-  // What it takes from the budget.
+  // What it takes from the budget: the same on every processor, as the decisions are.
+  static constexpr ByteCount kOwnBytes = ByteCount{12} * 1024;
   static ByteCount table_bytes(std::size_t zones) noexcept {
-    return sizeof(ExpectedUse) + LruShadow::table_bytes(zones);
+    return kOwnBytes + LruShadow::table_bytes(zones);
   }
 
  private:
@@ -70,6 +71,8 @@ class ExpectedUse final : public EvictionOrder {
   bool approached_ = false;   // a zone, in this cycle
   bool follows_shadow_ = false;
 };
+
+static_assert(sizeof(ExpectedUse) <= ExpectedUse::kOwnBytes);
 
 std::unique_ptr<EvictionOrder> make_expected_use(const EvictionPlace& place);
 
