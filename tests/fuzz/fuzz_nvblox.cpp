@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "tests/fuzz/nvblox_entries.hpp"
+#include "tests/fuzz/input_entries.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   zonepack::fuzz::read_nvblox(std::as_bytes(std::span(data, size)));

@@ -13,6 +13,7 @@
 #include "packer/encode/packable.hpp"
 #include "packer/sources/cloud/cloud_source.hpp"
 #include "packer/sources/cloud/tiled_cloud.hpp"
+#include "packer/sources/nvblox/nvblox_source.hpp"
 #include "packer/sources/rtabmap/rtabmap_database.hpp"
 #include "packer/sources/stella/stella_msgpack.hpp"
 #include "packer/sources/stella/stella_source.hpp"
@@ -135,6 +136,12 @@ bool read_pcd(ByteSpan bytes) {
   return read_source(bytes, "cloud.pcd", [](const std::string& path) {
     return std::make_unique<packer::CloudSource>(
         "pcd", packer::open_tiled_cloud(packer::SourceOptions(path)), path);
+  });
+}
+
+bool read_nvblox(ByteSpan bytes) {
+  return read_source(bytes, "map.nvblx", [](const std::string& path) {
+    return std::make_unique<packer::NvbloxSource>(packer::SourceOptions(path));
   });
 }
 

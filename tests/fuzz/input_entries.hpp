@@ -17,6 +17,8 @@ bool read_sqlite(ByteSpan bytes);
 bool read_msgpack(ByteSpan bytes);
 // A point cloud (PCD), cut into tiles. Accepted when every tile can be packed.
 bool read_pcd(ByteSpan bytes);
+// An nvblox map. Accepted when every cube can be packed.
+bool read_nvblox(ByteSpan bytes);
 // Blocks of a recording, sealed with right checksums: for each its kind (1 byte), the size of its
 // content (uint32), the content.
 bool read_recording(ByteSpan bytes);

@@ -9,12 +9,9 @@
 #include <cstring>
 #include <memory>
 #include <string>
-#include <string_view>
 
-#include "packer/encode/packable.hpp"
 #include "packer/encode/voxel_encoder.hpp"
 #include "packer/record/block_layers.hpp"
-#include "packer/sources/nvblox/nvblox_source.hpp"
 #include "runtime/pack_format/column.hpp"
 #include "runtime/pack_format/voxel_block.hpp"
 #include "tests/support/memory_folder.hpp"
@@ -27,13 +24,6 @@ namespace {
 using packer::Bytes;
 
 constexpr std::array<std::uint32_t, 4> kPlanes = {2, 2, 1, 5};
-
-std::string as_file(ByteSpan bytes) {
-  static const test_support::TemporaryFolder folder;
-  const auto path = folder / "map.nvblx";
-  test_support::write_bytes(path, {bytes.begin(), bytes.end()});
-  return path.string();
-}
 
 Bytes block_with(std::byte first, ByteSpan block) {
   Bytes out(1, first);
@@ -138,28 +128,6 @@ bool read_plain_voxels(ByteSpan bytes) {
     if (block.size() > planes * 2050) std::abort();
   }
   return true;
-}
-
-bool read_nvblox(ByteSpan bytes) {
-  const std::string path = as_file(bytes);
-  bool whole = true;
-  try {
-    packer::NvbloxSource source{packer::SourceOptions(path)};
-    packer::SignatureRecord record;
-    whole = source.outline().damages.empty();
-    for (const packer::NodeOutline& node : source.outline().nodes) {
-      try {
-        source.read(node.id, packer::PayloadSet(), record);
-      } catch (const packer::DamagedSignature& error) {
-        if (error.damage().signature != node.id) std::abort();
-        whole = false;
-      }
-    }
-  } catch (const std::runtime_error& error) {
-    if (!std::string_view(error.what()).starts_with(path)) std::abort();
-    return false;
-  }
-  return whole;
 }
 
 bool read_layers(ByteSpan bytes) {

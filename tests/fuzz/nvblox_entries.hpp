@@ -13,8 +13,6 @@ namespace zonepack::fuzz {
 bool read_voxels(ByteSpan bytes);
 // A block as nvblox stores it, of any length: encoded, decoded, the same.
 bool read_plain_voxels(ByteSpan bytes);
-// An .nvblx file, of which every cube is read.
-bool read_nvblox(ByteSpan bytes);
 // What a pack says of the layers of blocks.
 bool read_layers(ByteSpan bytes);
 
