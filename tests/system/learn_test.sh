@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # usage: learn_test.sh BIN SOURCE: zoned learn counts drives; runs load by it, learn on, and are replayed the same.
 set -euo pipefail
+# shellcheck source-path=SCRIPTDIR
+. "$(dirname "$0")/expect.sh"
 bin=$1 source=$2 data=$2/tests/data
 mission=$data/scenario1_loop
 work=$(mktemp -d)
@@ -9,14 +11,6 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 export ZONED_SOCKET=$work/zoned.sock
 
-fail() { echo "$*" >&2; exit 1; }
-exits() {  # CODE COMMAND...
-  local want=$1 got=0
-  shift
-  "$@" >out.txt 2>&1 || got=$?
-  ((got == want)) || fail "$*: exit code $got, not $want: $(cat out.txt)"
-}
-says() { grep -q -- "$1" out.txt || fail "no word of '$1' in: $(cat out.txt)"; }
 key() { python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))[sys.argv[2]])' "$1" "$2"; }
 
 "$bin/zonepack" build --db "$data/hospital-small.db" --zones "$data/zones.geojson" --out map \

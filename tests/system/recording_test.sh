@@ -2,21 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 # usage: recording_test.sh BIN SOURCE: what zoned run records, replayed, gives the same events; state survives.
 set -euo pipefail
+# shellcheck source-path=SCRIPTDIR
+. "$(dirname "$0")/expect.sh"
 bin=$1 source=$2 data=$2/tests/data
 mission=$data/scenario1_loop
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 export ZONED_SOCKET=$work/zoned.sock
-
-fail() { echo "$*" >&2; exit 1; }
-exits() {  # CODE COMMAND...
-  local want=$1 got=0
-  shift
-  "$@" >out.txt 2>&1 || got=$?
-  ((got == want)) || fail "$*: exit code $got, not $want: $(cat out.txt)"
-}
-says() { grep -q -- "$1" out.txt || fail "no word of '$1' in: $(cat out.txt)"; }
 
 "$source/tests/system/prove/recording_equality.sh" "$bin" "$source" 2
 

@@ -3,13 +3,13 @@
 # usage: replay_test.sh BIN SOURCE: the sample map, built and driven through scenario 1, keeps what it promises;
 # damage and wrong use end as documented.
 set -euo pipefail
+# shellcheck source-path=SCRIPTDIR
+. "$(dirname "$0")/expect.sh"
 bin=$1 data=$2/tests/data
 run=$data/scenario1_loop
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-
-fail() { echo "$*" >&2; exit 1; }
 
 replay() {  # MAP OPTION...
   local map=$1
@@ -17,19 +17,6 @@ replay() {  # MAP OPTION...
   "$bin/zoned" replay --config "$config" --map "$map" --can "$can" \
     --corrections "$corrections" --truth "$run/base_groundtruth.txt" "$@"
 }
-
-holds() {  # FILE JQ-CONDITION
-  jq -e "$2" "$1" >/dev/null || fail "$1 does not hold $2: $(cat "$1")"
-}
-
-exits() {  # CODE COMMAND...
-  local want=$1 got=0
-  shift
-  "$@" >out.txt 2>&1 || got=$?
-  ((got == want)) || fail "$*: exit code $got, not $want: $(cat out.txt)"
-}
-
-says() { grep -q -- "$1" out.txt || fail "no word of '$1' in: $(cat out.txt)"; }
 
 config=$2/config/agilex.yaml can=$run/can0.log corrections=$run/corrections.txt
 "$bin/zonepack" build --db "$data/hospital-small.db" --zones "$data/zones.geojson" --out map \

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # usage: run_test.sh BIN SOURCE: the robot's own threads drive the sample map through scenario 1, played from its log.
 set -euo pipefail
+# shellcheck source-path=SCRIPTDIR
+. "$(dirname "$0")/expect.sh"
 bin=$1 data=$2/tests/data config=$2/config/agilex.yaml
 run=$data/scenario1_loop
 work=$(mktemp -d)
@@ -9,27 +11,12 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 export ZONED_SOCKET=$work/run/zoned.sock
 
-fail() { echo "$*" >&2; exit 1; }
-
 live() {  # MAP SPEED OPTION...
   local map=$1 speed=$2
   shift 2
   $how "$bin/zoned" run --config "$config" --map "$map" --can "log:$run/can0.log@$speed" \
     --corrections "$run/corrections.txt" --truth "$run/base_groundtruth.txt" "${privilege[@]}" "$@"
 }
-
-holds() {  # FILE JQ-CONDITION
-  jq -e "$2" "$1" >/dev/null || fail "$1 does not hold $2: $(cat "$1")"
-}
-
-exits() {  # CODE COMMAND...
-  local want=$1 got=0
-  shift
-  "$@" >out.txt 2>&1 || got=$?
-  ((got == want)) || fail "$*: exit code $got, not $want: $(cat out.txt)"
-}
-
-says() { grep -q -- "$1" out.txt || fail "no word of '$1' in: $(cat out.txt)"; }
 
 how= privilege=()
 if ! chrt -f 1 true 2>/dev/null; then

@@ -13,7 +13,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from source_tools import BIN, DATABASE, SOURCE, ZONES, build, check_memory, need, refused, zonepack
+from source_tools import (BIN, DATABASE, SOURCE, ZONES, build, check_memory, inside, near_border,
+                          need, polygons, refused, zonepack)
 
 sys.path.insert(0, str(SOURCE / "tests/support"))
 import hospital_cloud as clouds  # noqa: E402
@@ -22,31 +23,6 @@ import hospital_cloud as clouds  # noqa: E402
 def exported(folder):
     zonepack("verify", folder)
     return [json.loads(line) for line in zonepack("export", folder).stdout.splitlines()]
-
-
-def polygons():
-    out = {}
-    for feature in json.loads(ZONES.read_text())["features"]:
-        if feature["geometry"]["type"] == "Polygon":
-            out[feature["properties"]["name"]] = feature["geometry"]["coordinates"][0]
-    return out
-
-
-def inside(ring, x, y):
-    odd = False
-    for (ax, ay), (bx, by) in zip(ring, ring[1:]):
-        if (ay > y) != (by > y) and x < (bx - ax) * (y - ay) / (by - ay) + ax:
-            odd = not odd
-    return odd
-
-
-def near_border(ring, x, y):
-    for (ax, ay), (bx, by) in zip(ring, ring[1:]):
-        length = math.hypot(bx - ax, by - ay)
-        share = max(0, min(1, ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / length ** 2)) if length else 0
-        if math.hypot(ax + share * (bx - ax) - x, ay + share * (by - ay) - y) < 1e-4:
-            return True
-    return False
 
 
 def check_pcd(work, points):

@@ -9,7 +9,6 @@ drives through the map; then every kind of bad input, each refused by name with 
 import base64
 import hashlib
 import json
-import math
 import sqlite3
 import struct
 import subprocess
@@ -17,7 +16,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from source_tools import BIN, DATABASE, SOURCE, ZONES, build, check_memory, need, refused, zonepack
+from source_tools import (BIN, DATABASE, SOURCE, ZONES, build, check_memory, inside, near_border,
+                          need, polygons, refused, zonepack)
 
 sys.path.insert(0, str(SOURCE / "tests/support"))
 import nvblox_map as nvblox  # noqa: E402
@@ -72,27 +72,9 @@ def check_everything_back(work, blocks):
     return {key: zone for key, (zone, _) in seen.items()}
 
 
-def inside(ring, x, y):
-    odd = False
-    for (ax, ay), (bx, by) in zip(ring, ring[1:]):
-        if (ay > y) != (by > y) and x < (bx - ax) * (y - ay) / (by - ay) + ax:
-            odd = not odd
-    return odd
-
-
-def near_border(ring, x, y):
-    for (ax, ay), (bx, by) in zip(ring, ring[1:]):
-        length = math.hypot(bx - ax, by - ay)
-        share = max(0, min(1, ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / length ** 2)) if length else 0
-        if math.hypot(ax + share * (bx - ax) - x, ay + share * (by - ay) - y) < 1e-4:
-            return True
-    return False
-
-
 def check_zones(work, zone_of):
     """A block is in the zone that has its centre; no drawn zone has those of the others."""
-    rings = {f["properties"]["name"]: f["geometry"]["coordinates"][0]
-             for f in json.loads(ZONES.read_text())["features"] if f["geometry"]["type"] == "Polygon"}
+    rings = polygons()
     here = {name: 0 for name in rings}
     for (layer, index), zone in zone_of.items():
         x, y = ((i + .5) * nvblox.BLOCK for i in index[:2])

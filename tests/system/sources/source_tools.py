@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the tests of sources share: running zonepack, and failing by the test's own name."""
+import json
+import math
 import os
 import resource
 import subprocess
@@ -30,6 +32,32 @@ def zonepack(*arguments, code=0, **environment):
 
 def build(source, out, *options, **how):
     return zonepack("build", "--db", source, "--zones", ZONES, "--out", out, *options, **how)
+
+
+def polygons():
+    """Of each zone that is drawn, its outline; the first point comes again at the end."""
+    out = {}
+    for feature in json.loads(ZONES.read_text())["features"]:
+        if feature["geometry"]["type"] == "Polygon":
+            out[feature["properties"]["name"]] = feature["geometry"]["coordinates"][0]
+    return out
+
+
+def inside(ring, x, y):
+    odd = False
+    for (ax, ay), (bx, by) in zip(ring, ring[1:]):
+        if (ay > y) != (by > y) and x < (bx - ax) * (y - ay) / (by - ay) + ax:
+            odd = not odd
+    return odd
+
+
+def near_border(ring, x, y):
+    for (ax, ay), (bx, by) in zip(ring, ring[1:]):
+        length = math.hypot(bx - ax, by - ay)
+        share = max(0, min(1, ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / length ** 2)) if length else 0
+        if math.hypot(ax + share * (bx - ax) - x, ay + share * (by - ay) - y) < 1e-4:
+            return True
+    return False
 
 
 def refused(work, name, content, *said, options=()):
