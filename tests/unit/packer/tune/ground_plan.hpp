@@ -68,4 +68,15 @@ struct GroundPlan {
   }
 };
 
+// B 10 m, A 10 m, C 40 m in a row: 10, 10 and 40 slots.
+inline GroundPlan three_rooms() {
+  GroundPlan plan;
+  plan.add("B", -20, -10);
+  plan.add("A", -10, 0);
+  plan.add("C", 0, 40);
+  plan.join(0, 1, -10);
+  plan.join(1, 2, 0);
+  return plan;
+}
+
 }  // namespace zonepack::packer::tune

@@ -8,17 +8,6 @@
 namespace zonepack::packer::tune {
 namespace {
 
-// B 10 m, A 10 m, C 40 m in a row.
-GroundPlan three_rooms() {
-  GroundPlan plan;
-  plan.add("B", -20, -10);
-  plan.add("A", -10, 0);
-  plan.add("C", 0, 40);
-  plan.join(0, 1, -10);
-  plan.join(1, 2, 0);
-  return plan;
-}
-
 TEST(Layout, SmallestBudgetIsThatOfTheLargestPairOfNeighbours) {
   GroundPlan plan = three_rooms();
   const Smallest smallest = smallest_of(plan.layout);

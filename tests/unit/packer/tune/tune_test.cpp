@@ -14,17 +14,6 @@
 namespace zonepack::packer::tune {
 namespace {
 
-// B 10 m, A 10 m, C 40 m in a row: 10, 10 and 40 slots.
-GroundPlan row() {
-  GroundPlan plan;
-  plan.add("B", -20, -10);
-  plan.add("A", -10, 0);
-  plan.add("C", 0, 40);
-  plan.join(0, 1, -10);
-  plan.join(1, 2, 0);
-  return plan;
-}
-
 // From B into C as far as x and back, so many times.
 Track rounds(const GroundPlan& plan, const std::string& name, double x_m, int times) {
   std::vector<double> stops{-15};
@@ -67,7 +56,7 @@ bool changes(const std::vector<Step>& steps, const std::string& zone) {
 ByteCount room_of_55(const GroundPlan& plan) { return charged_with(plan.layout.fixed_bytes(), 55); }
 
 TEST(Tune, CutsOffWhatNoDriveUses) {
-  const GroundPlan plan = row();
+  const GroundPlan plan = three_rooms();
   std::vector<Track> tracks{rounds(plan, "1", 5, 4), rounds(plan, "2", 5, 4)};
   const Tuned result = tuned(plan, tracks, false, room_of_55(plan), 1000);
   // B, A, C and then B, C three times and B: each round loads C and B anew.
@@ -84,7 +73,7 @@ TEST(Tune, CutsOffWhatNoDriveUses) {
 }
 
 TEST(Tune, LeavesOutWhatHelpsOnlyInTraining) {
-  const GroundPlan plan = row();
+  const GroundPlan plan = three_rooms();
   // The first turns back early and gains from any cut behind that, more than the others lose; but
   // these load all of C each time, and a cut makes two loads of one. So held out, one drive wins
   // and two lose.
@@ -102,7 +91,7 @@ TEST(Tune, LeavesOutWhatHelpsOnlyInTraining) {
 }
 
 TEST(Tune, JudgesTheFirstHalfOfOneDriveByItsSecond) {
-  const GroundPlan plan = row();
+  const GroundPlan plan = three_rooms();
   std::vector<Track> halves{rounds(plan, "first", 5, 6), circles(plan, "second", 6)};
   const Tuned result = tuned(plan, halves, true, room_of_55(plan), 50'000);
   EXPECT_FALSE(changes(result.made, "C"));
@@ -120,7 +109,7 @@ TEST(Tune, JudgesTheFirstHalfOfOneDriveByItsSecond) {
 
 TEST(Tune, JoinsZonesThatAreAlwaysEnteredTogether) {
   // Closets D and E of 2 m behind each other at the end; the pair that sets the budget is A and C.
-  GroundPlan plan = row();
+  GroundPlan plan = three_rooms();
   plan.add("D", 40, 42);
   plan.add("E", 42, 44);
   plan.join(2, 3, 40);
@@ -141,7 +130,7 @@ TEST(Tune, JoinsZonesThatAreAlwaysEnteredTogether) {
 }
 
 TEST(Tune, CutsUntilTheBudgetSuffices) {
-  const GroundPlan plan = row();
+  const GroundPlan plan = three_rooms();
   // 35 slots: A and C have 50, so C must have parts of at most 25.
   const ByteCount budget = charged_with(plan.layout.fixed_bytes(), 35) + 4096;
   std::vector<Track> tracks{rounds(plan, "1", 39, 2), rounds(plan, "2", 39, 2)};
@@ -153,7 +142,7 @@ TEST(Tune, CutsUntilTheBudgetSuffices) {
 }
 
 TEST(Tune, LeavesOutWhatIsNoZoneFile) {
-  const GroundPlan plan = row();
+  const GroundPlan plan = three_rooms();
   std::vector<Track> tracks{rounds(plan, "1", 5, 4), rounds(plan, "2", 5, 4)};
   const Tuned result =
       tuned(plan, tracks, false, room_of_55(plan), 1000, [](const Layout&) { return "overlaps"; });
