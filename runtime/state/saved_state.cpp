@@ -7,6 +7,7 @@
 
 #include "platform/base/require.hpp"
 #include "runtime/odometry/se2.hpp"
+#include "runtime/pack_format/file/small_file.hpp"
 #include "runtime/pack_format/limits.hpp"
 #include "runtime/recording/bytes.hpp"
 
@@ -15,13 +16,6 @@ namespace {
 
 constexpr std::uint8_t kMagic[8] = {0x89, 'Z', 'P', 'S', '\r', '\n', 0x1A, '\n'};
 constexpr std::uint16_t kMajor = 1, kMinor = 0;
-constexpr std::size_t kHeaderBytes = 24;
-
-template <typename Digest>
-void read_digest(ByteReader& in, Digest& digest) {
-  const ByteSpan bytes = in.bytes(digest.size());
-  if (!bytes.empty()) std::memcpy(digest.data(), bytes.data(), digest.size());
-}
 
 bool is_usable(const SavedState& state) {
   const Covariance2& c = state.covariance;
@@ -37,7 +31,7 @@ bool is_usable(const SavedState& state) {
 std::vector<std::byte> write_state(const SavedState& state) {
   ZP_REQUIRE(state.zone.size() <= kMaxNameBytes);
   std::vector<std::byte> file(kMostStateBytes);
-  ByteWriter out(std::span<std::byte>(file).subspan(kHeaderBytes));
+  ByteWriter out(std::span<std::byte>(file).subspan(kSmallFileHeaderBytes));
   out.u64(state.sequence);
   out.u64(state.runs);
   out.bytes(std::as_bytes(std::span(state.map_lineage)));
@@ -51,14 +45,7 @@ std::vector<std::byte> write_state(const SavedState& state) {
   out.u8(state.trusted);
   out.u8(static_cast<std::uint8_t>(state.zone.size()));
   out.bytes(std::as_bytes(std::span(state.zone)));
-  ZP_REQUIRE(out.ok());
-  ByteWriter header(file);
-  for (const std::uint8_t byte : kMagic) header.u8(byte);
-  header.u16(kMajor);
-  header.u16(kMinor);
-  header.u32(static_cast<std::uint32_t>(out.size()));
-  header.u64(xxh3(out.written()));
-  file.resize(kHeaderBytes + out.size());
+  complete_small_file(file, kMagic, kMajor, kMinor, out);
   return file;
 }
 

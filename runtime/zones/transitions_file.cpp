@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "platform/base/require.hpp"
-#include "runtime/pack_format/file/byte_codec.hpp"
+#include "runtime/pack_format/file/small_file.hpp"
 #include "runtime/pack_format/file/zone_name.hpp"
 
 namespace zonepack {
@@ -14,18 +14,11 @@ namespace {
 
 constexpr std::uint8_t kMagic[8] = {0x89, 'Z', 'P', 'T', '\r', '\n', 0x1A, '\n'};
 constexpr std::uint16_t kMajor = 1, kMinor = 0;
-constexpr std::size_t kHeaderBytes = 24;
 constexpr std::size_t kMostNames = Transitions::kMostContexts * (2 + Successors::kMost);
 
 // Two zones, an age and a count; then for each successor a zone, a count, a time and an age.
 constexpr std::size_t kMostContextBytes = 16 + Successors::kMost * 20;
 constexpr std::size_t kFixedBytes = 128;
-
-template <typename Digest>
-void read_digest(ByteReader& in, Digest& digest) {
-  const ByteSpan bytes = in.bytes(digest.size());
-  if (!bytes.empty()) std::memcpy(digest.data(), bytes.data(), digest.size());
-}
 
 // What is wrong with a file, in words and as a code.
 class Refusal {
@@ -197,11 +190,12 @@ LearnedTransitions save(const Transitions& transitions) {
 }
 
 std::vector<std::byte> write_transitions(const LearnedTransitions& learned) {
-  std::size_t room = kHeaderBytes + kFixedBytes + learned.contexts.size() * kMostContextBytes;
+  std::size_t room =
+      kSmallFileHeaderBytes + kFixedBytes + learned.contexts.size() * kMostContextBytes;
   for (const std::string& name : learned.zones) room += name.size() + 1;
-  ZP_REQUIRE(room >= kHeaderBytes + kFixedBytes);
+  ZP_REQUIRE(room >= kSmallFileHeaderBytes + kFixedBytes);
   std::vector<std::byte> file(room);
-  ByteWriter out(std::span<std::byte>(file).subspan(kHeaderBytes));
+  ByteWriter out(std::span<std::byte>(file).subspan(kSmallFileHeaderBytes));
   out.bytes(std::as_bytes(std::span(learned.map_lineage)));
   out.bytes(std::as_bytes(std::span(learned.map_version)));
   out.bytes(std::as_bytes(std::span(learned.origin)));
@@ -226,14 +220,7 @@ std::vector<std::byte> write_transitions(const LearnedTransitions& learned) {
       out.varint(learned.steps - entry.seen);
     }
   }
-  ZP_REQUIRE(out.ok());
-  ByteWriter header(file);
-  for (const std::uint8_t byte : kMagic) header.u8(byte);
-  header.u16(kMajor);
-  header.u16(kMinor);
-  header.u32(static_cast<std::uint32_t>(out.size()));
-  header.u64(xxh3(out.written()));
-  file.resize(kHeaderBytes + out.size());
+  complete_small_file(file, kMagic, kMajor, kMinor, out);
   return file;
 }
 
