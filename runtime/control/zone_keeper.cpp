@@ -151,7 +151,8 @@ void ZoneKeeper::see_to_likely(const Wishes& wishes, std::int64_t now_ns) noexce
     if (loading_ != kNoZone || memory_.state(zone) != ZoneState::kAbsent) continue;
     if (!wishes.sure && was_tried(zone)) continue;
     if (may_start(zone, Demand::kLikely, now_ns) &&
-        (i < due ? make_colder_room(zone, *wishes.foresight) : fits_free(zone)) &&
+        (i < due ? make_colder_room(zone, *wishes.foresight)
+                 : memory_.room().holds(needs_[zone])) &&
         admit(zone, Purpose::kApproach)) {
       loads_useful_ = !wishes.sure;
       if (tried_count_ < tried_.size()) tried_[tried_count_++] = zone;
@@ -173,8 +174,7 @@ bool ZoneKeeper::make_colder_room(ZoneId zone, const Foresight& foresight) noexc
   std::size_t count = 0;
   NeedSum room = memory_.room();
   const ZoneNeed need = needs_[zone];
-  const auto fits = [&] { return need.slots <= room.slots && need.signatures <= room.signatures; };
-  if (!fits() && !memory_.frozen()) {
+  if (!room.holds(need) && !memory_.frozen()) {
     const float worth = foresight.worth(zone);
     for (ZoneId other = memory_.coldest(); other != kNoZone && count < colder.size();
          other = memory_.warmer(other)) {
@@ -183,7 +183,7 @@ bool ZoneKeeper::make_colder_room(ZoneId zone, const Foresight& foresight) noexc
     }
   }
   std::size_t taken = 0;
-  for (; !fits() && taken < count; ++taken) {
+  for (; !room.holds(need) && taken < count; ++taken) {
     std::size_t least = taken;
     for (std::size_t i = taken + 1; i < count; ++i) {
       const Colder &a = colder[i], &b = colder[least];
@@ -195,14 +195,9 @@ bool ZoneKeeper::make_colder_room(ZoneId zone, const Foresight& foresight) noexc
                 colder.begin() + static_cast<std::ptrdiff_t>(least) + 1);
     room.add(needs_[colder[taken].zone]);
   }
-  if (!fits()) return false;
+  if (!room.holds(need)) return false;
   for (std::size_t i = 0; i < taken; ++i) drop(colder[i].zone);
   return true;
-}
-
-bool ZoneKeeper::fits_free(ZoneId zone) const noexcept {
-  const NeedSum room = memory_.room();
-  return needs_[zone].slots <= room.slots && needs_[zone].signatures <= room.signatures;
 }
 
 bool ZoneKeeper::may_start(ZoneId zone, Demand demand, std::int64_t now_ns) noexcept {

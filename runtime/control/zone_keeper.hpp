@@ -109,7 +109,6 @@ class ZoneKeeper {
   static Demand demand_of(std::size_t place, const Wishes& wishes) noexcept;
   void see_to(std::size_t place, const Wishes& wishes, std::int64_t now_ns) noexcept;
   void see_to_likely(const Wishes& wishes, std::int64_t now_ns) noexcept;
-  bool fits_free(ZoneId zone) const noexcept;
   bool make_colder_room(ZoneId zone, const Foresight& foresight) noexcept;
   bool may_start(ZoneId zone, Demand demand, std::int64_t now_ns) noexcept;
   void keep_pinned(std::int64_t now_ns) noexcept;

@@ -43,10 +43,6 @@ Residency::Residency(std::size_t zones, const ResidencyLimits& limits, EvictionO
   ZP_REQUIRE(limits.fixed <= limits.budget);
 }
 
-bool Residency::fits(ZoneNeed need, NeedSum available) const noexcept {
-  return need.slots <= available.slots && need.signatures <= available.signatures;
-}
-
 NeedSum Residency::free() const noexcept {
   return {std::min(paid_slots_ - set_aside_, slot_count_ - set_aside_slots_) - used_.slots,
           signature_limit(limits_) - used_.signatures};
@@ -56,7 +52,7 @@ Result<void> Residency::check(ZoneId zone, ZoneNeed need, Purpose purpose) const
   const Record& record = records_[zone];
   if (record.state == ZoneState::kCancelling) return ErrorCode::kBusy;
   if (record.state != ZoneState::kAbsent) return ErrorCode::kExists;
-  if (!fits(need, {slot_count_, signature_limit(limits_)})) {
+  if (!NeedSum{slot_count_, signature_limit(limits_)}.holds(need)) {
     return {ErrorCode::kTooLarge, need.slots};
   }
   // Used and free together make up the limit, so these sums cannot overflow.
@@ -65,7 +61,7 @@ Result<void> Residency::check(ZoneId zone, ZoneNeed need, Purpose purpose) const
     available.add(evictable_.sum());
     if (purpose == Purpose::kOwnZone) available.add(leased_.sum());
   }
-  if (!fits(need, available)) return {ErrorCode::kNoRoom, need.slots};
+  if (!available.holds(need)) return {ErrorCode::kNoRoom, need.slots};
   return {};
 }
 
@@ -129,7 +125,7 @@ Result<SlotChain> Residency::hand_over(ZoneId zone) noexcept {
 
 Result<void> Residency::adopt(ZoneId zone, ZoneNeed need, const SlotChain& slots) noexcept {
   if (const auto possible = check(zone, need, Purpose::kApproach); !possible) return possible;
-  if (!fits(need, free())) return {ErrorCode::kNoRoom, need.slots};
+  if (!free().holds(need)) return {ErrorCode::kNoRoom, need.slots};
   open(zone, need);
   fill(records_[zone], zone, slots);
   return {};
@@ -173,7 +169,7 @@ void Residency::fill(Record& record, ZoneId zone, const SlotChain& slots) noexce
 
 Result<void> Residency::restore(ZoneId zone, ZoneNeed need, std::uint32_t generation) noexcept {
   if (const auto possible = check(zone, need, Purpose::kApproach); !possible) return possible;
-  if (!fits(need, free())) return {ErrorCode::kNoRoom, need.slots};
+  if (!free().holds(need)) return {ErrorCode::kNoRoom, need.slots};
   open(zone, need);
   records_[zone].generation = generation;
   complete(zone, generation, {0, 0, need.slots});

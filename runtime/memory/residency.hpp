@@ -90,7 +90,7 @@ class Residency {
     if (const Result<void> possible = check(zone, need, purpose); !possible)
       return possible.error();
     std::size_t evictions = 0;
-    for (; !fits(need, free()); ++evictions) on_evicted(evict_next(need));
+    for (; !free().holds(need); ++evictions) on_evicted(evict_next(need));
     open(zone, need);
     return evictions;
   }
@@ -216,7 +216,6 @@ class Residency {
   };
 
   Result<void> check(ZoneId zone, ZoneNeed need, Purpose purpose) const noexcept;
-  bool fits(ZoneNeed need, NeedSum available) const noexcept;
   NeedSum free() const noexcept;
   Eviction evict_next(ZoneNeed wanted) noexcept;
   Eviction evict(ZoneId zone) noexcept;

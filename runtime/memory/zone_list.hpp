@@ -33,6 +33,10 @@ struct NeedSum {
     slots -= need.slots;
     signatures -= need.signatures;
   }
+  // Whether this is room enough.
+  bool holds(ZoneNeed need) const noexcept {
+    return need.slots <= slots && need.signatures <= signatures;
+  }
   friend bool operator==(const NeedSum&, const NeedSum&) = default;
 };
 
