@@ -35,7 +35,7 @@ struct BlockLayers {
 // As BlockCube::layers_info has it (FORMAT.md: BlockLayers).
 Bytes write_block_layers(const BlockLayers& layers);
 
-// Throws std::runtime_error where the bytes are not whole. SQL is not examined: whoever runs it
+// Throws std::runtime_error where the bytes are not whole. SQL is not examined: who runs it
 // must not trust it.
 BlockLayers read_block_layers(std::span<const std::byte> bytes);
 

@@ -13,8 +13,8 @@
 
 namespace zonepack::packer {
 
-// What tells a signature from all others of its source, whatever ids they have: the moment, and the
-// odometry, a label or, without both, the place.
+// What a signature has in common with no other of its source, whatever their ids: the moment, and
+// the odometry, a label or, without both, the place.
 using SignatureIdentity = std::tuple<double, std::string, Transform>;
 
 // Nothing when the source says too little.

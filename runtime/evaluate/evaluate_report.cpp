@@ -168,7 +168,7 @@ void add_time_figures(const Evaluation& evaluation, const std::vector<Choice>& c
     for (std::size_t i = 0; i < choices.size(); ++i) {
       if (choices[i].curves && choices[i].drive == drive) runs.push_back(i);
     }
-    // Too many to be told apart: of each map only the first policy.
+    // Too many lines to follow: of each map only the first policy.
     if (runs.size() > kMostCurves) {
       const NamedEviction* const first = choices[runs.front()].eviction;
       std::erase_if(runs, [&](std::size_t i) { return choices[i].eviction != first; });

@@ -26,7 +26,7 @@ struct Totals {
 std::vector<Totals> totals_of(const std::vector<Choice>& choices,
                               const std::vector<Evaluated>& results);
 
-// The last part of a map's or a drive's path that tells it from the others, for people.
+// As much of the end of a map's or a drive's path as no other has, for people.
 std::string short_name(const std::string& path);
 
 }  // namespace zonepack

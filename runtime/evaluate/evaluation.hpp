@@ -35,7 +35,7 @@ struct Choice {
   const PreloadMode* preload = nullptr;
   std::uint64_t storage_rate = 0;
   bool curves = false;       // keep the trace for the report
-  bool order_trace = false;  // keep what the eviction order was told, as CSV
+  bool order_trace = false;  // keep the calls of the eviction order, as CSV
 };
 
 // How it went.

@@ -32,7 +32,6 @@ std::shared_ptr<const LearnedTransitions> go_on_learning(
     const std::string& folder, const std::shared_ptr<const LearnedTransitions>& given,
     const Digest16& map_lineage, std::vector<std::string>& notes) {
   if (given && given->map_lineage != map_lineage) return given;  // the map's model refuses it
-  const Digest16 origin = origin_of(given.get());
   auto begun = begun_with(given, map_lineage);
   if (folder.empty()) {
     notes.push_back("preload.learn: what is learned is lost at the end; set state.folder");
@@ -48,7 +47,7 @@ std::shared_ptr<const LearnedTransitions> go_on_learning(
   }
   if (saved->map_lineage != map_lineage) {
     notes.push_back(path + ": was learned on another map; going on without it");
-  } else if (saved->origin != origin) {
+  } else if (saved->origin != begun->origin) {
     notes.push_back(path +
                     ": preload.transitions names another file than it went on from; going "
                     "on from that one");
