@@ -2,7 +2,6 @@
 #include "runtime/control/cycle.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "platform/base/require.hpp"
 #include "platform/can_errors.hpp"
@@ -15,14 +14,6 @@ namespace {
 // After a fix of a localizer that sees ahead: longer than it usually goes without one.
 constexpr std::int64_t kViewHolds_ns = 30'000'000'000;
 constexpr double kMostView_m = 20;
-// How long before a zone is entered its path gives it away at least: a load that takes no longer is
-// not made earlier.
-constexpr double kPathGives_s = 0.5;
-// A likely zone is loaded so many times its loading before it is expected: until then a step of the
-// robot may show better what comes.
-constexpr double kEarly = 3;
-constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
-
 // To the nearest thousandth, by arithmetic that gives the same on every machine.
 std::int32_t thousandths(double value) noexcept {
   constexpr double kMost = 2e9;
@@ -46,11 +37,8 @@ Cycle::Cycle(const CycleConfig& settings, const CycleParts& parts)
       markers_(parts.graph, settings.markers),
       dock_(settings.dock),
       tracker_settings_(settings.tracker),
-      transitions_(parts.transitions),
-      preloads_(uses_habits(settings.preload)),
-      learns_((settings.preload.learn || parts.memory.has_order()) && parts.transitions != nullptr),
-      pays_(settings.preload.pays),
-      load_s_(parts.load_s) {
+      outlook_(parts.graph, parts.load_s, parts.transitions, settings.preload,
+               settings.preload.learn || parts.memory.has_order()) {
   state_.map = parts.map;
 }
 
@@ -107,7 +95,8 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
   }
   follow_zones(zone_before, now_ns);
   if (memory_.has_order()) {
-    memory_.begin_cycle({now_ns, tracker_.zone(), steps_.before(), route_ahead()});
+    memory_.begin_cycle(
+        {now_ns, tracker_.zone(), outlook_.before(), outlook_.ahead(tracker_.zone())});
   }
   const Wanted wanted = list_wanted(now_ns);
   // The first is not the robot's own where that is of a layer that is not used.
@@ -117,8 +106,8 @@ const CycleState& Cycle::run(const CycleInput& input) noexcept {
                              wanted.needed,
                              wanted.useful,
                              own_first && (!state_.lost || state_.pose.valid),
-                             &foresight_,
-                             !route_ahead().empty(),
+                             &outlook_.foresight(),
+                             !outlook_.ahead(tracker_.zone()).empty(),
                              wanted.due});
 
   state_.zone_resident = state_.zone != kNoZone && memory_.resident(state_.zone);
@@ -280,71 +269,10 @@ CommandReply Cycle::obey(const Command& command, std::int64_t now_ns) noexcept {
       if (state_.lost) emit(EventKind::kTurnAsked);
       break;
     case Command::Kind::kRouteHint:
-      route_length_ = 0;
-      for (std::size_t i = 0; i < command.route_length && i < route_.size(); ++i) {
-        if (exists(command.route[i])) route_[route_length_++] = command.route[i];
-      }
-      route_place_ = 0;
-      step_on_route();
-      foresee();
+      outlook_.hint({command.route.data(), command.route_length}, tracker_.zone());
       break;
   }
   return reply;
-}
-
-// The robot's zone on the route, searched from where it was: a route may lead through a zone twice.
-void Cycle::step_on_route() noexcept {
-  for (std::size_t i = 0; i < route_length_; ++i) {
-    const std::size_t place = (route_place_ + i) % route_length_;
-    if (route_[place] != tracker_.zone()) continue;
-    route_place_ = place;
-    return;
-  }
-}
-
-void Cycle::learn_step(std::int64_t t_ns) noexcept {
-  const ZoneSteps::Step* const step = steps_.enter(graph_, tracker_.zone(), t_ns);
-  if (step != nullptr && learns_) {
-    transitions_->learn(step->before, step->now, step->next, step->stay_ns);
-  }
-}
-
-// Which zones may come, and which of them are worth loading before they are approached. In the
-// order in which they are trusted: the route, then what was learned.
-void Cycle::foresee() noexcept {
-  likely_count_ = 0;
-  foresight_.clear();
-  const ZoneId own = tracker_.zone();
-  const std::span<const ZoneId> ahead = route_ahead();
-  if (!ahead.empty()) {
-    foresight_.follow(ahead, steps_.before(), own, transitions_);
-  } else if (preloads_ && transitions_ != nullptr && own != kNoZone) {
-    foresight_.look(*transitions_, steps_.before(), own);
-  }
-  double before_s = 0;  // for loading all that is listed so far
-  for (const Coming& coming : foresight_.coming()) {
-    if (likely_count_ == likely_.size()) break;
-    if (coming.zone == own || !graph_.loadable(coming.zone)) continue;
-    const double share = static_cast<double>(coming.share);
-    const double load_s = static_cast<double>(load_s_[coming.zone]);
-    // What its path alone would leave the robot to wait for, against the reading that may be for
-    // nothing: both grow with the zone's bytes.
-    const double saved_s = share * (load_s - kPathGives_s);
-    if (ahead.empty() && saved_s < pays_ * (1 - share) * load_s) continue;
-    if (ahead.empty() && saved_s <= 0) continue;
-    before_s += load_s;
-    const double early_s =
-        static_cast<double>(coming.seconds) - kEarly * load_s - (ahead.empty() ? 0 : before_s);
-    std::int64_t from_ns = steps_.since_ns();
-    if (saved_s <= 0) {
-      from_ns = kNever_ns;                                // its path gives it away early enough
-    } else if (early_s > 0 && transitions_ != nullptr) {  // else nothing is known of times
-      from_ns += static_cast<std::int64_t>(early_s * 1e9);
-    }
-    likely_[likely_count_++] = {coming.zone, from_ns};
-  }
-  // The destination, however far, takes the last place.
-  if (!ahead.empty() && likely_count_ == likely_.size()) likely_.back().zone = ahead.back();
 }
 
 void Cycle::follow_zones(ZoneId before, std::int64_t now_ns) noexcept {
@@ -352,9 +280,7 @@ void Cycle::follow_zones(ZoneId before, std::int64_t now_ns) noexcept {
   if (tracker_.zone() != before) {
     state_.zone = tracker_.zone();
     emit(EventKind::kZoneEntered, state_.zone);
-    learn_step(now_ns);
-    step_on_route();
-    foresee();
+    outlook_.enter(state_.zone, now_ns);
     if (before != kNoZone && state_.zone != kNoZone) {
       ++state_.zone_switches;
       if (graph_.loadable(state_.zone) && !memory_.resident(state_.zone)) {
@@ -394,12 +320,12 @@ Cycle::Wanted Cycle::list_wanted(std::int64_t now_ns) const noexcept {
   wanted.needed = wanted.count;
   want_view(wanted);
   wanted.useful = wanted.count;
-  for (std::size_t i = 0; i < likely_count_; ++i) {
-    if (now_ns >= likely_[i].from_ns) wanted.add(likely_[i].zone);
+  for (const Outlook::Likely& likely : outlook_.likely()) {
+    if (now_ns >= likely.from_ns) wanted.add(likely.zone);
   }
   wanted.due = wanted.count;
-  if (route_ahead().empty()) return wanted;
-  for (std::size_t i = 0; i < likely_count_; ++i) wanted.add(likely_[i].zone);
+  if (outlook_.ahead(tracker_.zone()).empty()) return wanted;
+  for (const Outlook::Likely& likely : outlook_.likely()) wanted.add(likely.zone);
   return wanted;
 }
 
@@ -408,12 +334,6 @@ void Cycle::want_view(Wanted& wanted) const noexcept {
   if (view_m_ <= 0 || !state_.pose.valid || state_.pose.t_ns > view_until_ns_) return;
   const ZonesInView view(graph_, state_.pose.T_map_base, tracker_.pose_zone(), view_m_);
   for (const ZoneId zone : view.zones()) wanted.add(zone);
-}
-
-// The zones of the route after the robot's own; none when it is not on the route.
-std::span<const ZoneId> Cycle::route_ahead() const noexcept {
-  if (route_place_ >= route_length_ || route_[route_place_] != tracker_.zone()) return {};
-  return {route_.data() + route_place_ + 1, route_length_ - route_place_ - 1};
 }
 
 void Cycle::go_on_from(const Cycle& other) noexcept {
@@ -430,9 +350,7 @@ void Cycle::go_on_from(const Cycle& other) noexcept {
   start_ns_ = other.start_ns_;
   view_m_ = other.view_m_;
   view_until_ns_ = other.view_until_ns_;
-  if (transitions_ != nullptr && other.transitions_ != nullptr) {
-    transitions_->take_over(*other.transitions_);
-  }
+  outlook_.take_over(other.outlook_);
   freeze(other.frozen_, other.held_);
   events_.begin_cycle(state_.cycles - 1, other.events_.t_ns());
 }

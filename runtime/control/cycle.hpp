@@ -12,13 +12,13 @@
 #include "runtime/control/command.hpp"
 #include "runtime/control/event.hpp"
 #include "runtime/control/line_edge.hpp"
+#include "runtime/control/outlook.hpp"
 #include "runtime/control/zone_keeper.hpp"
 #include "runtime/control/zone_loader.hpp"
 #include "runtime/memory/residency.hpp"
 #include "runtime/odometry/pose.hpp"
 #include "runtime/odometry/pose_filter.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
-#include "runtime/zones/foresight.hpp"
 #include "runtime/zones/preload.hpp"
 #include "runtime/zones/tracker.hpp"
 #include "runtime/zones/transitions.hpp"
@@ -102,8 +102,6 @@ struct CycleState {
 class Cycle {
  public:
   static constexpr std::size_t kMostCommands = 16;
-  // Zones that are loaded because of what is likely, or farther on a route.
-  static constexpr std::size_t kMostLikely = 8;
 
   Cycle(const CycleConfig& settings, const CycleParts& parts);
 
@@ -167,10 +165,6 @@ class Cycle {
   };
   Wanted list_wanted(std::int64_t now_ns) const noexcept;
   void want_view(Wanted& wanted) const noexcept;
-  std::span<const ZoneId> route_ahead() const noexcept;
-  void step_on_route() noexcept;
-  void learn_step(std::int64_t t_ns) noexcept;
-  void foresee() noexcept;
   void emit(EventKind kind, ZoneId zone = kNoZone, const char* reason = nullptr) noexcept;
 
   const ZoneGraph& graph_;
@@ -186,24 +180,7 @@ class Cycle {
   std::optional<CycleConfig::Dock> dock_;
   TrackerSettings tracker_settings_;
   CycleState state_;
-  std::array<ZoneId, Command::kMostRoute> route_{};
-  std::size_t route_length_ = 0;
-  std::size_t route_place_ = 0;  // of the robot's zone on the route; route_length_: not on it
-  Transitions* transitions_;
-  bool preloads_ = false;  // what is likely to come
-  bool learns_;
-  double pays_;
-  std::span<const float> load_s_;
-  ZoneSteps steps_;
-  Foresight foresight_;
-  struct Likely {
-    ZoneId zone = kNoZone;
-    // Earlier there is time to learn more, and on a route only free room is taken: what is evicted
-    // early, before the robot has left a zone that it needs less, is loaded once more.
-    std::int64_t from_ns = 0;
-  };
-  std::array<Likely, kMostLikely> likely_{};  // to be loaded before they are approached
-  std::size_t likely_count_ = 0;
+  Outlook outlook_;
   std::array<CommandReply, kMostCommands> replies_{};
   std::size_t reply_count_ = 0;
   std::int64_t start_ns_ = 0;
