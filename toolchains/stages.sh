@@ -25,7 +25,7 @@ stage_asan() {
 stage_tsan() {
   local units=(platform memory client serve live)
   build tsan --target "${units[@]/#/test_}"
-  ctest_of tsan "threads, thread sanitizer" -R "^($(IFS='|' && echo "${units[*]}"))/"
+  ctest_of tsan "threads, thread sanitizer" -R "^($(IFS='|' && echo "${units[*]}"))\$"
 }
 
 stage_prove() {

@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: Apache-2.0
 # Run on the virtual robot, whose kernel has a CAN bus: tests/system/guest/can_frames_test.sh.
-zonepack_test_program(can_frames.cpp zonepack_core)
+zonepack_measurement(can_frames.cpp zonepack_core)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # What is counted in instructions: admission and eviction, for any zone size and any number of zones; recorded cycles.
-zonepack_test_program(eviction_steps.cpp zonepack_core)
-zonepack_test_program(expected_steps.cpp zonepack_core)
-zonepack_test_program(recorded_cycles.cpp zonepack_runtime)
+zonepack_measurement(eviction_steps.cpp zonepack_core)
+zonepack_measurement(expected_steps.cpp zonepack_core)
+zonepack_measurement(recorded_cycles.cpp zonepack_runtime)
 find_program(VALGRIND valgrind)
 if(VALGRIND AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")  # neither runs under the other
   add_test(NAME bench/eviction_steps

@@ -22,7 +22,7 @@ add_executable(test_fuzz ${fuzz_dir}/chunk_check_test.cpp ${fuzz_dir}/input_muta
                ${fuzz_dir}/mutation_test.cpp ${fuzz_dir}/nvblox_mutation_test.cpp)
 zonepack_settings(test_fuzz)
 target_link_libraries(test_fuzz PRIVATE zonepack_fuzz GTest::gtest GTest::gtest_main)
-gtest_discover_tests(test_fuzz TEST_PREFIX "fuzz/" DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+zonepack_list_tests(test_fuzz fuzz 600)
 
 if(ZONEPACK_BUILD_FUZZERS)
   if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
