@@ -48,15 +48,17 @@ class Run:
         self.environment = {**os.environ, "ZONED_SOCKET": str(work / "zoned.sock"), "STATE_DIRECTORY": str(work)}
 
     def start(self, program, *arguments):
-        self.log = open(self.work / f"{program}.txt", "w", encoding="utf-8")
-        return subprocess.Popen([self.options.bin / program, *map(str, arguments)], env=self.environment, stdout=self.log,
-                                stderr=subprocess.STDOUT)
+        with (self.work / f"{program}.txt").open("w", encoding="utf-8") as log:
+            return subprocess.Popen([self.options.bin / program, *map(str, arguments)], env=self.environment, stdout=log,
+                                    stderr=subprocess.STDOUT)
 
     def drive(self, drive, speed, localizer=()):
+        """Until the drive ends, looking at memory meanwhile; returns the seconds that it took."""
         started = time.monotonic()
+        where = ("--start", "0.875,10.975,-149") if localizer else ("--corrections", f"{drive}.txt")
         zoned = self.start("zoned", "run", "--config", self.options.source / "config/agilex.yaml", "--map", self.folder,
                            "--can", f"sim:{drive}.yaml@{speed}", "--quiet", "--json", self.work / "run.json", "--events",
-                           self.work / "events.jsonl", "--budget", self.budget(), *self.where(drive, localizer))
+                           self.work / "events.jsonl", "--budget", self.budget(), *where)
         while not (self.work / "zoned.sock").exists() and zoned.poll() is None:
             time.sleep(0.01)
         zoneloc = self.start("zoneloc", "run", *localizer) if localizer else None
@@ -77,15 +79,13 @@ class Run:
         done = subprocess.run([self.options.bin / "zonepack", "plan", self.folder, "--json", "-"], capture_output=True, check=True)
         return json.loads(done.stdout)["smallest_budget_bytes"]
 
-    def where(self, drive, localizer):
-        return ("--start", "0.875,10.975,-149") if localizer else ("--corrections", f"{drive}.txt")
-
     def counts(self, parts):
         """Zones loaded and unloaded in the first of so many equal parts of the run, and in the last."""
-        events = [json.loads(line) for line in (self.work / "events.jsonl").open(encoding="utf-8")]
+        events = [json.loads(line) for line in (self.work / "events.jsonl").read_text(encoding="utf-8").splitlines()]
         end = events[-1]["t_ns"]
-        return [tuple(sum(event["event"] == kind and begin <= event["t_ns"] < begin + end / parts for event in events)
-                      for kind in ("load_done", "evicted")) for begin in (0, end - end / parts)]
+        part = end / parts
+        return [tuple(sum(event["event"] == kind and begin <= event["t_ns"] < begin + part for event in events)
+                      for kind in ("load_done", "evicted")) for begin in (0, end - part)]
 
     def rows(self, what, part, parts, seconds):
         counts = self.counts(parts)
@@ -94,10 +94,10 @@ class Run:
             if not looks:
                 continue
             share = max(len(looks) // parts, 1)
-            cells = [f"{max(looks[:share]) / 2**20:.2f}", f"{max(looks[-share:]) / 2**20:.2f}", f"{max(looks) / 2**20:.2f}"]
+            most = [f"{max(some) / 2**20:.2f}" for some in (looks[:share], looks[-share:], looks)]
             loads = [f"{loaded} / {unloaded}" for loaded, unloaded in counts]
-            print(f"| {name}, {what} | {part} 1 and {parts} | {' | '.join(cells)} | {loads[0]} | {loads[1]} | {seconds:.0f} s |",
-                  flush=True)
+            cells = (f"{name}, {what}", f"{part} 1 and {parts}", *most, *loads, f"{seconds:.0f}")
+            print("| " + " | ".join(cells) + " |", flush=True)
 
 
 def images_of(mission, laps, turn, folder):
@@ -125,8 +125,9 @@ def main():
         subprocess.run([options.bin / "zonepack", "build", "--db", options.data / "hospital.db", "--zones",
                         options.data / "zones.geojson", "--out", work / "map", "--payload", "features,scan,grid"],
                        capture_output=True, check=True)
-        print("| what | told | resident first, MiB | last, MiB | most | loaded / unloaded first | last | took |")
-        print("|---|---|---|---|---|---|---|---|")
+        print("| what | told | resident in the first, MiB | in the last | in all | zones loaded / unloaded in the first |"
+              " in the last | took, s |")
+        print("|---" * 8 + "|")
         day, loop = options.data / "dayshift", options.data / "scenario1_loop"
         for name in ("day", "loop"):
             (work / name).mkdir()

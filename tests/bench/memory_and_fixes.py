@@ -105,8 +105,8 @@ def ours(options, work):
                 fixes = replay(options, folder, mission, budget)
                 zoned, zoneloc = resident(options, folder, mission, budget, work)
                 yield {"map": name, "mission": mission, "budget": budget, "zoned": zoned, "zoneloc": zoneloc,
-                       "packed": packed, "database": database, "bytes": zoned + zoneloc, "share": fixes["right"] / fixes["images"],
-                       "wrong": fixes["wrong"], "absent_s": fixes["zone_absent_s"]}
+                       "packed": packed, "database": database, "bytes": zoned + zoneloc, "wrong": fixes["wrong"],
+                       "share": fixes["right"] / fixes["images"], "absent_s": fixes["zone_absent_s"]}
 
 
 def rtabmap(options):
@@ -121,7 +121,8 @@ def rtabmap(options):
             x, y, yaw, mx, my, myaw = (float(row[key]) for key in ("gx", "gy", "gyaw", "mx", "my", "myaw"))
             if float(row["accepted"]) == 0:
                 continue
-            near = math.hypot(x - mx, y - my) <= 0.5 and abs(math.remainder(yaw - myaw, 2 * math.pi)) <= math.radians(10)
+            off = abs(math.remainder(yaw - myaw, 2 * math.pi))
+            near = math.hypot(x - mx, y - my) <= 0.5 and off <= math.radians(10)
             right, wrong = right + near, wrong + (not near)
         yield {"map": name, "mission": next(m for m in MISSIONS if m.startswith(scenario)),
                "settings": f"{limit.replace('thr', 'MemoryThr ')}, {retrieved.replace('ret', 'MaxRetrieved ')}"
@@ -131,16 +132,21 @@ def rtabmap(options):
 
 
 def table(measured, recorded):
-    lines = ["| map | drive | budget, MiB | zoned + zoneloc, MiB | alpha: packs; database | right fixes, % | wrong | own zone missing, s |",
-             "|---|---|---|---|---|---|---|---|"]
+    lines = ["| map | drive | budget, MiB | resident: zoned + zoneloc, MiB | times the packs: zoned, both | times the database |"
+             " right fixes, % | wrong | own zone missing, s |", "|---" * 9 + "|"]
     for row in measured:
-        lines.append(f"| {row['map']} | {row['mission'].split('_')[1]} | {row['budget'] / 2**20:.2f} | {row['zoned'] / 2**20:.1f} + "
-                     f"{row['zoneloc'] / 2**20:.1f} | {row['bytes'] / row['packed']:.2f} (zoned {row['zoned'] / row['packed']:.2f}); "
-                     f"{row['bytes'] / row['database']:.2f} | {row['share'] * 100:.1f} | {row['wrong']} | {row['absent_s']:.1f} |")
+        sizes = " + ".join(f"{row[program] / 2**20:.1f}" for program in ("zoned", "zoneloc"))
+        alphas = ", ".join(f"{row[memory] / row['packed']:.2f}" for memory in ("zoned", "bytes"))
+        lines.append(line(row, f"{row['budget'] / 2**20:.2f}", sizes, alphas, f"{row['absent_s']:.1f}"))
     for row in recorded:
-        lines.append(f"| {row['map']} | {row['mission'].split('_')[1]} | RTAB-Map, {row['settings']} | {row['bytes'] / 2**20:.0f} | "
-                     f"-; {row['bytes'] / row['database']:.1f} | {row['share'] * 100:.1f} | {row['wrong']} | - |")
+        lines.append(line(row, f"RTAB-Map, {row['settings']}", f"{row['bytes'] / 2**20:.0f}", "-", "-"))
     return "\n".join(lines) + "\n"
+
+
+def line(row, budget, sizes, alphas, absent):
+    cells = (row["map"], row["mission"].split("_")[1], budget, sizes, alphas, f"{row['bytes'] / row['database']:.2f}",
+             f"{row['share'] * 100:.1f}", row["wrong"], absent)
+    return "| " + " | ".join(map(str, cells)) + " |"
 
 
 def main():

@@ -27,7 +27,8 @@ def text(x, y, words, size=12, anchor="start", kind=""):
 
 
 def line(points, kind):
-    return f'<polyline class="line {kind}" stroke-width="2.5" points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in points)}"/>'
+    places = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+    return f'<polyline class="line {kind}" stroke-width="2.5" points="{places}"/>'
 
 
 def mark(x, y, row, ours):
@@ -46,7 +47,8 @@ def legend():
             ("hospital", "round trip", "", True), ("hospital-small", "185 signatures, loop", "scenario1_loop", True),
             ("hospital-small", "round trip", "", True), ("hospital", "RTAB-Map, 1095", "scenario1_loop", False),
             ("hospital-small", "RTAB-Map, 185", "scenario1_loop", False)):
-        out += [mark(x + 5, 60, {"map": name, "mission": mission, "bytes": 0, "share": 0, "wrong": 0}, ours), text(x + 14, 64, words)]
+        example = {"map": name, "mission": mission, "bytes": 0, "share": 0, "wrong": 0}
+        out += [mark(x + 5, 60, example, ours), text(x + 14, 64, words)]
         x += 30 + 7 * len(words)
     return out
 
@@ -63,11 +65,12 @@ def draw(measured, recorded):
     mib = LEAST
     while mib <= MOST:
         x, y = at(mib, 0)
-        out += [f'<line class="axis" x1="{x:.1f}" y1="{y}" x2="{x:.1f}" y2="{y + 4}"/>', text(x, y + 18, f"{mib}", 11, "middle", "quiet")]
+        out.append(f'<line class="axis" x1="{x:.1f}" y1="{y}" x2="{x:.1f}" y2="{y + 4}"/>')
+        out.append(text(x, y + 18, f"{mib}", 11, "middle", "quiet"))
         mib *= 2
     out.append(text(WIDTH - RIGHT, HEIGHT - 16, "resident at most, MiB", 11, "end", "quiet"))
     for name, mission in sorted({(row["map"], row["mission"]) for row in measured}):
-        rows = sorted((row for row in measured if (row["map"], row["mission"]) == (name, mission)), key=lambda row: row["budget"])
+        rows = [row for row in measured if (row["map"], row["mission"]) == (name, mission)]  # by budget
         points = [at(row["bytes"] / 2**20, row["share"]) for row in rows]
         out += [line(points, name), *(mark(*point, row, True) for point, row in zip(points, rows))]
     out += [mark(*at(row["bytes"] / 2**20, row["share"]), row, False) for row in recorded]

@@ -8,10 +8,11 @@ import math
 import sys
 from pathlib import Path
 
+FILLING_S = 3  # the tenant runs before the robot starts
 COLUMNS = ("zones, budget", "limit, MiB", "killed: zoned, zoneloc, tenant", "limit hit", "charged, MiB", "robot stalled, %",
-           "missed deadlines", "loads", "load, ms: p50, p99, max", "right fixes of images, wrong",
-           "query CPU, ms: p50, p95, max", "times alone", "image to pose, ms: p50, p95, max", "times alone",
-           "tenant MiB/s: alone, beside")
+           "missed deadlines", "loads", "load, ms: p50, p99, max", "right fixes, wrong, of images",
+           "query CPU, ms: p50, p95, max (times alone)", "image to pose, ms: p50, p95, max (times alone)",
+           "tenant, MiB/s (of alone)")
 
 
 def read_json(path):
@@ -55,12 +56,11 @@ def judge(fixes, truth):
     return right, total - right
 
 
-def figures(spread):
-    return ", ".join(f"{spread[key]:.1f}" for key in ("p50", "p95", "max"))
-
-
-def times(spread, alone):
-    return ", ".join(f"{spread[key] / alone[key]:.2f}" for key in ("p50", "p95", "max"))
+def spread_text(spread, alone):
+    """A time's p50, p95 and max; and how many times what it is without the tenant."""
+    keys = ("p50", "p95", "max")
+    text = ", ".join(f"{spread[key]:.1f}" for key in keys)
+    return text + (f" ({', '.join(f'{spread[key] / alone[key]:.1f}' for key in keys)})" if spread is not alone else "")
 
 
 def rate(folder, seconds=None):
@@ -74,25 +74,25 @@ def main():
         print("| " + " | ".join(COLUMNS) + " |")
         print("|" + "---|" * len(COLUMNS))
         return
-    name, run, truth, limit, alone, tenant = sys.argv[1], *map(Path, sys.argv[2:4]), int(sys.argv[4]), *map(Path, sys.argv[5:7])
+    name, limit = sys.argv[1], int(sys.argv[4])
+    run, truth, alone, tenant = (Path(sys.argv[place]) for place in (2, 3, 5, 6))
     facts = dict(pair.split("=") for pair in (run / "facts").read_text(encoding="utf-8").split())
-    zoned, zoneloc, before = (read_json(path) for path in (run / "zoned.json", run / "zoneloc.json", alone / "zoneloc.json"))
+    zoned, zoneloc = (read_json(run / f"{program}.json") for program in ("zoned", "zoneloc"))
+    before = read_json(alone / "zoneloc.json") if limit else zoneloc
     seconds = float(facts["seconds"])
-    kills = [facts["zoned_code"] == "137", facts["zoneloc_code"] == "137",
-             len(rows(run / "tenant.kills")) if (run / "tenant.kills").exists() else 0]
+    kills = [int(facts[f"{program}_code"] == "137") for program in ("zoned", "zoneloc")]
+    kills.append(len(rows(run / "tenant.kills")) if (run / "tenant.kills").exists() else 0)
     loads = load_times_ms(run / "events.jsonl") if (run / "events.jsonl").exists() else []
     right, wrong = judge(run / "fixes.txt", truth)
-    images = read_json(alone / "zoneloc.json")["images"] + read_json(alone / "zoneloc.json")["skipped"]
-    cells = [name, str(limit) if limit else "none", ", ".join(str(int(k)) for k in kills), facts["hits"] if limit else "-",
-             f"{int(facts['peak']) / 2**20:.1f}",
-             f"{float(facts['stalled_us']) / seconds / 1e4:.1f}" if facts.get("stalled_us") else "-",
-             str(zoned["missed_deadlines"]) if zoned else f"killed after {seconds:.0f} s",
-             str(len(loads)), ", ".join(f"{quantile(loads, q):.0f}" for q in (0.5, 0.99, 1)) if loads else "-",
-             f"{right} of {images}, {wrong}"]
-    for key in ("query_ms", "latency_ms"):
-        cells += [figures(zoneloc[key]), times(zoneloc[key], before[key]) if limit else "-"] if zoneloc else ["-", "-"]
-    cells.append(f"{rate(tenant):.0f}, {rate(run, seconds + 3):.0f}" if limit else "-")
-    print("| " + " | ".join(cells) + " |", flush=True)
+    beside = rate(run, seconds + FILLING_S) if limit else 0
+    print("| " + " | ".join((
+        name, str(limit or "none"), ", ".join(map(str, kills)), facts["hits"] if limit else "-", f"{int(facts['peak']) / 2**20:.1f}",
+        f"{float(facts['stalled_us']) / seconds / 1e4:.1f}" if facts.get("stalled_us") else "-",
+        str(zoned["missed_deadlines"]) if zoned else f"killed after {seconds:.0f} s",
+        str(len(loads)), ", ".join(f"{quantile(loads, q):.0f}" for q in (0.5, 0.99, 1)) if loads else "-",
+        f"{right}, {wrong}, {before['images'] + before['skipped']}",
+        *(spread_text(zoneloc[key], before[key]) if zoneloc else "-" for key in ("query_ms", "latency_ms")),
+        f"{beside:.0f} ({beside / rate(tenant):.2f})" if limit else "-")) + " |", flush=True)
 
 
 if __name__ == "__main__":
