@@ -17,9 +17,16 @@ if [ $# -lt 3 ]; then
 fi
 bin=$(realpath "$1") source=$(realpath "$2") data=$(realpath "$3")
 . "$source/tests/system/prove/lib.sh"
+mission=$data/${5:-scenario1_loop}
+[ -f "$mission/rgb.txt" ] || { echo "tenant: $mission/rgb.txt is missing: a mission with images is expected" >&2; exit 1; }
+for program in zonepack zoned zoneloc tenant recorded_fixes; do
+  [ -x "$bin/$program" ] ||
+    { echo "tenant: $bin/$program is missing: cmake --build --preset release --target $program" >&2; exit 1; }
+done
+find_memory_cgroups || { echo "tenant: no memory cgroup here"; exit 77; }
 work=${4:-$(mktemp -d "${TMPDIR:-/var/tmp}/zonepack-XXXXXX")}  # on a disk: what lies in memory is never read
 mkdir -p "$work"
-work=$(realpath "$work") mission=$data/${5:-scenario1_loop}
+work=$(realpath "$work")
 limits=("${@:6}")
 [ ${#limits[@]} -gt 0 ] || limits=(48 96)
 group='' pressure=''
@@ -29,8 +36,6 @@ cleanup() {
   leave
   [ -n "${4:-}" ] || rm -rf "$work"
 }
-trap 'cleanup "$@"' EXIT
-find_memory_cgroups || { echo "tenant: no memory cgroup here"; exit 77; }
 start=$(awk '!/^#/ { yaw = 2 * atan2($7, $8) * 180 / 3.14159265358979; printf "%s,%s,%.4f", $2, $3, yaw; exit }' \
   "$mission/base_groundtruth.txt")
 
@@ -131,6 +136,7 @@ row() {  # NAME RUN MAP BUDGET LIMIT_MIB
     "$work/${2%-*}-0" "$work/alone-$5"
 }
 
+trap 'cleanup "$@"' EXIT
 for program in zoned zoneloc; do strip -o "$work/$program" "$bin/$program"; done  # as they are installed
 cp "$data/zones.geojson" "$work/drawn.geojson"
 "$bin/zonepack" suggest-zones --db "$data/hospital.db" --method grid:5m --out "$work/squares.geojson" >"$work/squares.txt"
