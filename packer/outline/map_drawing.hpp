@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "packer/outline/map_image.hpp"
 #include "packer/record/map_source.hpp"
+#include "packer/record/source_kind.hpp"
 
 namespace zonepack::packer {
 
@@ -16,10 +18,20 @@ struct MapDrawing {
   std::string source;  // "local grids"
   std::size_t grids = 0;
   std::vector<std::string> warnings;
+  std::string missing;  // why there are no cells, and what to do: "no local grids, ..."
 };
 
-// The database's own map or, without one, what the local grids of its signatures add up to; leaves
-// out grids that are damaged, with a warning. Throws std::runtime_error as OccupancyMap does.
-MapDrawing drawing_of(MapSource& source);
+using SeeSignature = std::function<void(const SignatureRecord&)>;
+// Shows every signature that can be read, with the payloads wanted.
+using EachSignature = std::function<void(const PayloadSet& wanted, const SeeSignature& see)>;
+
+// What the local grids of signatures add up to or, where there are none, a slice of what else they
+// show (Slice). `each` is called up to three times. Throws std::runtime_error where the plan would
+// be too large.
+MapDrawing drawing_of(const EachSignature& each, const SliceHeights& slice);
+
+// The database's own map or, without one, what its signatures show; leaves out those that are
+// damaged, with a warning. Throws std::runtime_error as above.
+MapDrawing drawing_of(MapSource& source, const SliceHeights& slice = {});
 
 }  // namespace zonepack::packer
