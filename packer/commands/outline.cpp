@@ -58,6 +58,7 @@ ordered_json to_json(const MapDrawing& plan) {
   const MapImage& image = plan.image;
   if (image.cells.empty()) return nullptr;
   return {{"source", plan.source},
+          {"detail", plan.detail},
           {"grids", plan.grids},
           {"width", image.width},
           {"height", image.height},
@@ -130,7 +131,7 @@ void write_outline(const OutlineOptions& options, std::ostream& text, ordered_js
        << counted(paths.size(), "trajectory", "trajectories");
   if (with_map) {
     text << ", a map of " << plan.image.width << " x " << plan.image.height << " cells of "
-         << plan.image.resolution_m << " m from " << plan.source;
+         << plan.image.resolution_m << " m from " << plan.origin();
   }
   text << "\n";
   for (const std::string& warning : warnings) text << "warning: " << warning << "\n";

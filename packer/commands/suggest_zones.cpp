@@ -294,7 +294,7 @@ void suggest_zones(const SuggestZonesOptions& options, std::ostream& text, order
     separator = ", ";
   }
   text << ") and " << counted(found.plan.portals.size(), "portal") << " from "
-       << ground.drawing.source << "\n";
+       << ground.drawing.origin() << "\n";
   if (split > 0) {
     text << counted(split, "zone was", "zones were") << " split to keep to "
          << size_text(options.max_zone_bytes) << "\n";

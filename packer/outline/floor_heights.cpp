@@ -146,9 +146,9 @@ std::optional<FloorFinder::Flat> FloorFinder::around(const Flats& flats,
   for (const auto& [level, sum] : sums) most = std::max(most, sum.places);
   for (auto at = sums.begin(); at != sums.end(); ++at) {
     if (at->second.places < kLeastPlaces || at->second.places < most / 4) continue;
-    // The level below a floor has it too, in part: the floor is where it is covered most.
+    // The level below a floor has it too, in part: the floor is the uppermost that has most.
     for (auto next = std::next(at); next != sums.end() && next->first == at->first + 1 &&
-                                    next->second.places > at->second.places;
+                                    next->second.places >= at->second.places;
          ++next) {
       at = next;
     }
@@ -171,9 +171,9 @@ FloorHeights FloorFinder::find() {
     const std::optional<Flat> hood = around(found, square);
     if (!hood) continue;
     const Flat* best = &*hood;
-    std::uint32_t most = kLeastPlaces - 1;
+    std::uint32_t most = kLeastPlaces;
     for (const Flat& flat : own) {
-      if (std::abs(flat.level - hood->level) > kSlopeLevels || flat.places <= most) continue;
+      if (std::abs(flat.level - hood->level) > kSlopeLevels || flat.places < most) continue;
       best = &flat;
       most = flat.places;
     }

@@ -24,7 +24,7 @@ constexpr PayloadSet kGridOnly{.features = false,
 
 std::string metres_text(double value) {
   char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.4g", value);
+  std::snprintf(buffer, sizeof buffer, "%.3g", value);
   return buffer;
 }
 
@@ -66,7 +66,8 @@ void draw_slice(const EachSignature& each, const SliceHeights& heights, MapDrawi
         "no slice at a robot's height; if z is not up, turn the map before";
     return;
   }
-  plan.source = "a slice " + metres_text(heights.low_m) + " to " + metres_text(heights.high_m) +
+  plan.source = "a slice";
+  plan.detail = metres_text(heights.low_m) + " to " + metres_text(heights.high_m) +
                 " m above the floor at z " + metres_text(floor.median_m());
   Slice slice(std::move(floor), heights, cell_m);
   each(kPlacesOnly, [&slice](const SignatureRecord& record) {
@@ -92,7 +93,7 @@ MapDrawing drawing_of(const EachSignature& each, const SliceHeights& slice) {
 
 MapDrawing drawing_of(MapSource& source, const SliceHeights& slice) {
   const std::optional<OptimisedMap>& own = source.outline().optimised_map;
-  if (own && own->resolution > 0) return {image_of(*own), "the database's own map", 0, {}, {}};
+  if (own && own->resolution > 0) return {image_of(*own), "the database's own map", {}, 0, {}, {}};
   std::set<std::string> damages;
   SignatureRecord record;
   const EachSignature each = [&](const PayloadSet& wanted, const SeeSignature& see) {

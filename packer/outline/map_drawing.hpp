@@ -15,10 +15,13 @@ namespace zonepack::packer {
 // The floor plan of a map, and where it comes from.
 struct MapDrawing {
   MapImage image;      // without cells when nothing is known
-  std::string source;  // "local grids"
+  std::string source;  // "local grids", "a slice"
+  std::string detail;  // "0.2 to 1.5 m above the floor at z 0.01"; empty: there is none
   std::size_t grids = 0;
   std::vector<std::string> warnings;
   std::string missing;  // why there are no cells, and what to do: "no local grids, ..."
+
+  std::string origin() const { return detail.empty() ? source : source + " " + detail; }
 };
 
 using SeeSignature = std::function<void(const SignatureRecord&)>;

@@ -60,9 +60,9 @@ std::optional<Seen> seen_in(VoxelLayer layer, std::span<const std::byte> bytes, 
   const float value = float_at(bytes, 0);
   switch (layer) {
     case VoxelLayer::kTsdf:
-      if (!(float_at(bytes, 4) > 0)) return std::nullopt;
-      if (std::abs(value) <= kSurfaceVoxels * voxel_m) return Seen::kSurface;
-      return value > 0 ? std::optional(Seen::kFree) : std::nullopt;
+      if (!(float_at(bytes, 4) > 0) || std::isnan(value)) return std::nullopt;
+      // Distances run along rays, so that a floor seen from the side has none that is near 0.
+      return value <= kSurfaceVoxels * voxel_m ? Seen::kSurface : Seen::kFree;
     case VoxelLayer::kOccupancy:
       if (value == 0 || std::isnan(value)) return std::nullopt;
       return value > 0 ? Seen::kSurface : Seen::kFree;

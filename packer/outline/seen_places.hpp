@@ -23,11 +23,10 @@ inline constexpr PayloadSet kPlacesOnly{.features = false,
                                         .blocks = true};
 
 // The points of a scan with heights are surfaces; scans in one plane show nothing here. A voxel
-// shows the place of its center: in the TSDF a surface up to 0.75 voxels off, and free space
-// farther in front of one; without a TSDF the occupancy decides (log odds), without that the ESDF.
-// Voxels that were not observed, and those behind a surface, show nothing. Places that are no
-// numbers or over 10,000 km away are left out. Throws std::runtime_error where the layers of blocks
-// are not whole.
+// shows the place of its center: in the TSDF a surface where it was observed behind one or up to
+// 0.75 voxels in front, else free space; without a TSDF the occupancy decides (log odds), without
+// that the ESDF. Voxels that were not observed show nothing. Places that are no numbers or over
+// 10,000 km away are left out. Throws std::runtime_error where the layers of blocks are not whole.
 void for_each_place(const SignatureRecord& record, const SeenPlace& place);
 
 // The side of a cell for what the signature shows: 0.05 m or, of voxels, the least multiple of

@@ -77,14 +77,14 @@ def distance(x, y, z, reach):
     return max(-reach, min(reach, wall, table, inner))
 
 
-def blocks(layer, voxel=0.05, reach=0.2):
-    """nvblox blocks of `layer` by index: distances of the building; what is over 0.1 m behind a surface was not seen."""
+def blocks(layer, voxel=0.1, reach=0.4):
+    """nvblox blocks of `layer` by index: distances of the building; what is over two voxels behind a surface was not seen."""
     side = voxel * 8
     first = [math.floor(v / side) for v in (*BOX[0], -0.2)]
     last = [math.floor(v / side) for v in (*BOX[1], HEIGHT + 0.2)]
-    pack = {"tsdf_layer": lambda d: struct.pack("<2f", d, 1) if d > -0.1 else bytes(8),
-            "occupancy_layer": lambda d: struct.pack("<f", 0 if d < -0.1 else 2 if d < voxel / 2 else -2),
-            "esdf_layer": lambda d: struct.pack("<f3i4B", (d / voxel) ** 2, 0, 0, 0, d < 0, d > -0.1, abs(d) < voxel * 0.6, 0)}[layer]
+    pack = {"tsdf_layer": lambda d: struct.pack("<2f", d, 1) if d > -2 * voxel else bytes(8),
+            "occupancy_layer": lambda d: struct.pack("<f", 0 if d < -2 * voxel else 2 if d < voxel / 2 else -2),
+            "esdf_layer": lambda d: struct.pack("<f3i4B", (d / voxel) ** 2, 0, 0, 0, d < 0, d > -2 * voxel, abs(d) < voxel * 0.6, 0)}[layer]
     out = {}
     for bx in range(first[0], last[0] + 1):
         for by in range(first[1], last[1] + 1):
