@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <map>
-#include <stdexcept>
+#include <string>
 
 namespace zonepack::packer {
 namespace {
@@ -159,9 +159,9 @@ std::optional<FloorFinder::Flat> FloorFinder::around(const Flats& flats,
 
 FloorHeights FloorFinder::find() {
   if (levels_.size() > kMostLevels) {
-    throw std::runtime_error("its points lie in more than " + std::to_string(kMostLevels) +
-                             " places of 2 x 2 x 0.1 m, too many to look for a floor; cut the map, "
-                             "or leave out what is not the building");
+    throw NoFloorPlan("its points lie in more than " + std::to_string(kMostLevels) +
+                      " places of 2 x 2 x 0.1 m, too many to look for a floor; cut the map, "
+                      "or leave out what is not the building");
   }
   const Flats found = flats();
   levels_.clear();
@@ -179,7 +179,11 @@ FloorHeights FloorFinder::find() {
     }
     heights.z_m[square] = best->z_sum_m / best->points;
   }
-  return heights;
+  if (!heights.z_m.empty()) return heights;
+  throw NoFloorPlan(
+      "no floor in its points or voxels (a level of at least 1 m2 that is wider than a wall), so "
+      "no "
+      "slice at a robot's height; if z is not up, turn the map before");
 }
 
 }  // namespace zonepack::packer

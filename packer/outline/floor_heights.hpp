@@ -4,11 +4,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <unordered_map>
 #include <vector>
 
 // Where the floor is, found in points on surfaces.
 namespace zonepack::packer {
+
+// Why no floor plan can be drawn of a map, and what to do.
+class NoFloorPlan : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 // A square of 2 m by 2 m; its lower corner is at (2 x, 2 y).
 struct FloorSquare {
@@ -26,7 +33,7 @@ struct FloorSquareHash {
 
 inline constexpr double kFloorSquare_m = 2;
 
-// The height of the floor in each square that has one, or is next to one that has.
+// The height of the floor in each square with points that has a floor, or is next to one that has.
 struct FloorHeights {
   std::unordered_map<FloorSquare, double, FloorSquareHash> z_m;
 
@@ -53,7 +60,7 @@ class FloorFinder {
   void add(double x_m, double y_m, double z_m);
 
   // Nothing is held of the points afterwards. The order in which they came makes no difference.
-  // Throws std::runtime_error when they lie in more than kMostLevels.
+  // Throws NoFloorPlan when they lie in more than kMostLevels, or show no floor.
   FloorHeights find();
 
  private:

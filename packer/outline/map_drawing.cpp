@@ -40,40 +40,32 @@ void draw_grids(const EachSignature& each, MapDrawing& plan) {
   if (map) plan.image = map->image();
 }
 
-// Where the floor is, and the side of a cell; 0: the signatures show nothing.
-std::pair<FloorHeights, double> find_floor(const EachSignature& each) {
-  FloorFinder finder;
+// The side of a cell, as the first signature that shows places has it; 0: none does.
+double see_places(const EachSignature& each, const SeenPlace& place) {
   double cell_m = 0;
   each(kPlacesOnly, [&](const SignatureRecord& record) {
     if (cell_m == 0) cell_m = cell_size_of(record);
-    for_each_place(record, [&finder](double x, double y, double z, Seen seen) {
-      if (seen == Seen::kSurface) finder.add(x, y, z);
-    });
+    for_each_place(record, place);
   });
-  return {finder.find(), cell_m};
+  return cell_m;
 }
 
+// Throws NoFloorPlan.
 void draw_slice(const EachSignature& each, const SliceHeights& heights, MapDrawing& plan) {
-  auto [floor, cell_m] = find_floor(each);
+  FloorFinder finder;
+  const double cell_m = see_places(each, [&finder](double x, double y, double z, Seen seen) {
+    if (seen == Seen::kSurface) finder.add(x, y, z);
+  });
   if (cell_m == 0) {
-    plan.missing =
-        "no map of its own, no local grids, and no points or voxels to slice at a robot's height";
-    return;
+    throw NoFloorPlan(
+        "no map of its own, no local grids, and no points or voxels to slice at a robot's height");
   }
-  if (floor.z_m.empty()) {
-    plan.missing =
-        "no floor in its points or voxels (a level of at least 1 m2 that is wider than a wall), so "
-        "no slice at a robot's height; if z is not up, turn the map before";
-    return;
-  }
+  FloorHeights floor = finder.find();
   plan.source = "a slice";
   plan.detail = metres_text(heights.low_m) + " to " + metres_text(heights.high_m) +
                 " m above the floor at z " + metres_text(floor.median_m());
   Slice slice(std::move(floor), heights, cell_m);
-  each(kPlacesOnly, [&slice](const SignatureRecord& record) {
-    for_each_place(record,
-                   [&slice](double x, double y, double z, Seen seen) { slice.add(x, y, z, seen); });
-  });
+  see_places(each, [&slice](double x, double y, double z, Seen seen) { slice.add(x, y, z, seen); });
   plan.image = slice.image();
   if (slice.cell_m() > cell_m) {
     plan.warnings.push_back("the floor is so large that its plan has cells of " +
@@ -87,7 +79,12 @@ void draw_slice(const EachSignature& each, const SliceHeights& heights, MapDrawi
 MapDrawing drawing_of(const EachSignature& each, const SliceHeights& slice) {
   MapDrawing plan;
   draw_grids(each, plan);
-  if (plan.grids == 0) draw_slice(each, slice, plan);
+  if (plan.grids > 0) return plan;
+  try {
+    draw_slice(each, slice, plan);
+  } catch (const NoFloorPlan& reason) {
+    plan.missing = reason.what();
+  }
   return plan;
 }
 

@@ -29,8 +29,8 @@ using SeeSignature = std::function<void(const SignatureRecord&)>;
 using EachSignature = std::function<void(const PayloadSet& wanted, const SeeSignature& see)>;
 
 // What the local grids of signatures add up to or, where there are none, a slice of what else they
-// show (Slice). `each` is called up to three times. Throws std::runtime_error where the plan would
-// be too large.
+// show (Slice). `each` is called up to three times. Throws std::runtime_error where the local grids
+// are too far apart.
 MapDrawing drawing_of(const EachSignature& each, const SliceHeights& slice);
 
 // The database's own map or, without one, what its signatures show; leaves out those that are

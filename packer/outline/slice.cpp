@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "packer/outline/map_server.hpp"
@@ -63,9 +62,9 @@ Slice::Slice(FloorHeights floor, SliceHeights heights, double cell_m)
        box_ = cells_around_floor()) {
     cell_m_ *= 2;
     if (cell_m_ <= kCoarsest_m) continue;
-    throw std::runtime_error("its floor lies in places so far apart that a plan would measure " +
-                             std::to_string(box_.width()) + " x " + std::to_string(box_.height()) +
-                             " cells; cut the map, or leave out what is far from the building");
+    throw NoFloorPlan("its floor lies in places so far apart that a plan would measure " +
+                      std::to_string(box_.width()) + " x " + std::to_string(box_.height()) +
+                      " cells; cut the map, or leave out what is far from the building");
   }
   counts_.resize(static_cast<std::size_t>(box_.width() * box_.height()));
 }

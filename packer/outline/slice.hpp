@@ -24,7 +24,7 @@ namespace zonepack::packer {
 // around the floor, cells are twice as large, and so on up to 1 m.
 class Slice {
  public:
-  // The floor has at least one square. Throws std::runtime_error when cells of 1 m are too many.
+  // The floor has at least one square. Throws NoFloorPlan when cells of 1 m are too many.
   Slice(FloorHeights floor, SliceHeights heights, double cell_m);
 
   void add(double x_m, double y_m, double z_m, Seen seen);

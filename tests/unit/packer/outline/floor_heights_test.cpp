@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <stdexcept>
+#include <string>
 
 namespace zonepack::packer {
 namespace {
@@ -65,10 +65,10 @@ TEST(FloorHeights, ClimbsWithAFloorThatSlopes) {
 TEST(FloorHeights, DoesNotTakeWallsOrAScanInOnePlaneForAFloor) {
   FloorFinder walls;
   for (const double y : {0.0, 3.0, 6.0}) add_wall(walls, 0, 12, y, 0, 2.5);
-  EXPECT_TRUE(walls.find().z_m.empty());
+  EXPECT_THROW(walls.find(), NoFloorPlan);
   FloorFinder plane;
   for (const double y : {0.0, 3.0, 6.0}) add_wall(plane, 0, 12, y, 0.4, 0.5);
-  EXPECT_TRUE(plane.find().z_m.empty());
+  EXPECT_THROW(plane.find(), NoFloorPlan);
 }
 
 TEST(FloorHeights, IsNotMovedByPointsBelowTheFloor) {
@@ -82,9 +82,9 @@ TEST(FloorHeights, IsNotMovedByPointsBelowTheFloor) {
 
 TEST(FloorHeights, FindsNoneInOnePointOrInNone) {
   FloorFinder finder;
-  EXPECT_TRUE(finder.find().z_m.empty());
+  EXPECT_THROW(finder.find(), NoFloorPlan);
   finder.add(1, 2, 3);
-  EXPECT_TRUE(finder.find().z_m.empty());
+  EXPECT_THROW(finder.find(), NoFloorPlan);
 }
 
 TEST(FloorHeights, IsTheSameInAnyOrderOfThePoints) {
@@ -104,7 +104,7 @@ TEST(FloorHeights, RefusesPointsInMorePlacesThanItHolds) {
   try {
     finder.find();
     FAIL() << "more than kMostLevels were taken";
-  } catch (const std::runtime_error& error) {
+  } catch (const NoFloorPlan& error) {
     EXPECT_NE(std::string(error.what()).find("cut the map"), std::string::npos) << error.what();
   }
 }

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <stdexcept>
-
 #include "packer/outline/map_server.hpp"
 
 namespace zonepack::packer {
@@ -88,15 +86,15 @@ TEST(Slice, TakesLargerCellsForAFloorThatIsFarAndRefusesOneBeyondThat) {
   const Slice slice(far, {}, 0.05);
   EXPECT_DOUBLE_EQ(slice.cell_m(), 0.2);
   far.z_m[{500'000, 500'000}] = 1;
-  EXPECT_THROW(Slice(far, {}, 0.05), std::runtime_error);
+  EXPECT_THROW(Slice(far, {}, 0.05), NoFloorPlan);
 }
 
 TEST(Slice, IsNeverLargerThanAGridThatIsSearchedForRooms) {
   FloorHeights wide = two_squares();
-  wide.z_m[{203, 203}] = 1;  // 408 m: just over 2^26 cells of 5 cm
+  wide.z_m[{204, 203}] = 1;  // 8201 x 8161 cells of 5 cm: under 2^26, but not with their margin
   Slice slice(wide, {}, 0.05);
   slice.add(0.01, 0.01, 1, Seen::kSurface);
-  slice.add(407.9, 407.9, 1, Seen::kSurface);
+  slice.add(409.9, 407.9, 1, Seen::kSurface);
   const MapImage image = slice.image();
   EXPECT_DOUBLE_EQ(image.resolution_m, 0.1);
   EXPECT_LE(image.cells.size(), kMostServedCells);
