@@ -14,7 +14,8 @@ namespace {
 constexpr double kLevel_m = 0.1;
 constexpr std::int32_t kSide = 8;  // places of 0.25 m along a square
 constexpr int kWidePlaces = 7;     // of a place and its eight neighbors
-constexpr std::uint32_t kLeastPlaces = 16;
+constexpr std::uint32_t kLeastPlaces = 32;
+constexpr std::uint32_t kLeastOfSquare = 16;
 constexpr std::int32_t kSlopeLevels = 2;
 constexpr double kHeightSteps = 1024;
 
@@ -75,10 +76,11 @@ std::uint64_t FloorFinder::covered(const Key& key) const {
   return (own ? own->covered : 0) | (next ? next->covered : 0);
 }
 
-// How many of the square's places are covered, and most of their neighbors.
+// How many of the square's places are covered, with most of their neighbors and nothing above.
 std::uint32_t FloorFinder::wide_places(const Key& key) const {
   const std::uint64_t own = covered(key);
-  if (std::popcount(own) < kWidePlaces) return 0;
+  const std::uint64_t clear = own & ~covered({key.square, key.level + 2});
+  if (clear == 0) return 0;
   std::array<std::uint32_t, kSide + 2> rows{};  // with a margin from the squares around
   for (std::int32_t dy = -1; dy <= 1; ++dy) {
     for (std::int32_t dx = -1; dx <= 1; ++dx) {
@@ -97,7 +99,7 @@ std::uint32_t FloorFinder::wide_places(const Key& key) const {
   std::uint32_t wide = 0;
   for (std::size_t y = 0; y < kSide; ++y) {
     for (std::uint32_t x = 0; x < kSide; ++x) {
-      if ((rows[y + 1] >> (x + 1) & 1U) == 0) continue;
+      if ((clear >> (y * kSide + x) & 1U) == 0) continue;
       int here = 0;
       for (std::size_t row = y; row < y + 3; ++row) here += std::popcount(rows[row] >> x & 7U);
       if (here >= kWidePlaces) ++wide;
@@ -171,7 +173,7 @@ FloorHeights FloorFinder::find() {
     const std::optional<Flat> hood = around(found, square);
     if (!hood) continue;
     const Flat* best = &*hood;
-    std::uint32_t most = kLeastPlaces;
+    std::uint32_t most = kLeastOfSquare;
     for (const Flat& flat : own) {
       if (std::abs(flat.level - hood->level) > kSlopeLevels || flat.places < most) continue;
       best = &flat;
@@ -181,7 +183,8 @@ FloorHeights FloorFinder::find() {
   }
   if (!heights.z_m.empty()) return heights;
   throw NoFloorPlan(
-      "no floor in its points or voxels (a level of at least 1 m2 that is wider than a wall), so "
+      "no floor in its points or voxels (level ground of at least 2 m2 that is wider than a wall), "
+      "so "
       "no "
       "slice at a robot's height; if z is not up, turn the map before");
 }

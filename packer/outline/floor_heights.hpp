@@ -44,12 +44,12 @@ struct FloorHeights {
 FloorSquare floor_square_of(double x_m, double y_m);
 
 // Finds the floor as the lowest strong level: space is cut into levels of 0.1 m and places of 0.25
-// m, and counted are places that a point covers and most of their eight neighbors too, in two
-// levels that lie on each other. What covers ground like that is level and wide: a wall, a pole or
-// the points of a scan in one plane do not. In the 6 m by 6 m around a square, the lowest level is
-// taken that covers at least 1 m² and a quarter of what the largest covers, as a ceiling may. The
-// square's own level replaces it where the two are up to 0.2 m apart, so that the floor may slope;
-// its height is the mean of the points.
+// m, and counted are places that a point of two levels covers, as most of the eight around them,
+// with nothing in the two levels above. What covers ground like that is level and wide: a wall, a
+// pole or the points of a scan in one plane do not. In the 6 m by 6 m around a square, the lowest
+// level is taken that covers at least 2 m² and a quarter of what the largest covers, as a ceiling
+// may. The square's own level, of at least 1 m², replaces it where the two are up to 0.2 m apart,
+// so that the floor may slope; its height is the mean of the points.
 //
 // Memory: 56 bytes a level of a square in which points are, of which there are at most kMostLevels.
 class FloorFinder {

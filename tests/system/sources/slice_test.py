@@ -189,7 +189,7 @@ def check_wide(work):
         numbers.extend((x, y, z, x + 1500, y + 1500, z))
     write_floats(work / "wide.pcd", numbers)
     done = zonepack("outline", "--db", work / "wide.pcd", "--out", work / "wide")
-    need("cells of 0.2 m instead of 0.05 m" in done.stdout, done.stdout)
+    need("cells of 0.2 m instead of 0.05;" in done.stdout, done.stdout)
     numbers = array("f")
     for x in range(660):
         for y in range(660):
