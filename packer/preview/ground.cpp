@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "packer/decode/record_decoder.hpp"
+#include "packer/decode/zone_records.hpp"
 #include "packer/preview/png_file.hpp"
 #include "runtime/report/floor_plan_marks.hpp"
 
@@ -54,12 +54,8 @@ PayloadMask packed_in(const MapReader& map, const PayloadSet& wanted) {
 
 void see_zone(const MapReader& map, const fb::Zone& zone, PayloadMask wanted,
               const SeeSignature& see) {
-  const PackReader pack = map.open_pack(zone);
-  const Result<DecodedPack> decoded = DecodedPack::decode(pack, wanted);
-  if (!decoded) MapReader::fail(map.pack_path(zone), decoded.error());
-  for (std::uint32_t i = 0; i < decoded->view().size(); ++i) {
-    see(decode_record(decoded->view(), i));
-  }
+  ZoneRecords records(map, zone, wanted);
+  for (SignatureRecord record; records.next(record);) see(record);
 }
 
 }  // namespace

@@ -83,7 +83,8 @@ def check_commands(source, zones):
     zonepack("build", "--db", source, "--zones", zones, "--out", work / "packed")
     zonepack("verify", work / "packed")
     for name, options in (("packs", ()), ("source", ("--db", source))):
-        zonepack("report", work / "packed", "--out", work / f"{name}.svg", *options)
+        said = zonepack("report", work / "packed", "--out", work / f"{name}.svg", *options).stderr
+        need("warning" not in said, f"{source.name}: report from its {name}: {said}")
         need(shows_a_plan(work / f"{name}.svg"), f"{source.name}: report from its {name} draws no plan")
     zonepack("outline", "--db", source, "--out", work / "outline", "--json", work / "outline.json")
     plan = json.loads((work / "outline.json").read_text())["map"]
