@@ -63,7 +63,11 @@ Source read_source(const CheckZonesOptions& options, const ZonePlan& plan) {
   Source source{count_signatures(map->outline(), plan), {}};
   if (options.out.empty()) return source;
   try {
-    source.ground = drawing_of(*map);
+    source.ground = drawing_of(*map, options.source->slice);
+    if (!source.ground.missing.empty()) {
+      source.ground.warnings.push_back(options.source->name() + ": " + source.ground.missing +
+                                       "; no occupancy grid is drawn");
+    }
   } catch (const std::runtime_error& error) {
     source.ground.warnings.push_back(options.source->name() + ": " + error.what() +
                                      "; no occupancy grid is drawn");
@@ -288,6 +292,7 @@ void add_check_zones_command(CLI::App& app, int& exit_code) {
   command->add_option("ZONES", arguments->options.zones, "GeoJSON of zones and portals, in metres")
       ->required();
   add_source_options(*command, arguments->source, "count the signatures of this map per zone");
+  add_slice_option(*command, arguments->source);
   command
       ->add_option("--snap", arguments->options.snap_m,
                    "how far a portal's ends may stand off the border, metres")

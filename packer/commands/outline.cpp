@@ -58,6 +58,7 @@ ordered_json to_json(const MapDrawing& plan) {
   const MapImage& image = plan.image;
   if (image.cells.empty()) return nullptr;
   return {{"source", plan.source},
+          {"detail", plan.detail},
           {"grids", plan.grids},
           {"width", image.width},
           {"height", image.height},
@@ -99,7 +100,7 @@ void write_outline(const OutlineOptions& options, std::ostream& text, ordered_js
   const std::unique_ptr<MapSource> source = open_source(options.source);
   const MapOutline& outline = source->outline();
   require_signatures(outline, options.source.name());
-  const MapDrawing plan = drawing_of(*source);
+  const MapDrawing plan = drawing_of(*source, options.source.slice);
   const std::vector<Path> paths = paths_of(outline);
   const std::size_t linked = outline.nodes.size() - outline.unlinked();
 
@@ -118,9 +119,8 @@ void write_outline(const OutlineOptions& options, std::ostream& text, ordered_js
   std::vector<std::string> warnings = outline.warnings;
   warnings.insert(warnings.end(), plan.warnings.begin(), plan.warnings.end());
   if (!with_map) {
-    warnings.push_back(
-        options.source.name() +
-        ": no local grids and no map of its own: no map.pgm; draw along the trajectories");
+    warnings.push_back(options.source.name() + ": " + plan.missing +
+                       "; no map.pgm is written, draw along the trajectories");
   }
   if (outline.unlinked() > 0) {
     warnings.push_back(options.source.name() + ": " + std::to_string(outline.unlinked()) + " of " +
@@ -131,7 +131,7 @@ void write_outline(const OutlineOptions& options, std::ostream& text, ordered_js
        << counted(paths.size(), "trajectory", "trajectories");
   if (with_map) {
     text << ", a map of " << plan.image.width << " x " << plan.image.height << " cells of "
-         << plan.image.resolution_m << " m from " << plan.source;
+         << plan.image.resolution_m << " m from " << plan.origin();
   }
   text << "\n";
   for (const std::string& warning : warnings) text << "warning: " << warning << "\n";
@@ -156,6 +156,7 @@ void add_outline_command(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "outline", "Write a floor plan, signatures and trajectories for drawing zones (QGIS)");
   add_source_options(*command, arguments->options.source, "the map")->required();
+  add_slice_option(*command, arguments->options.source);
   command->add_option("--out", arguments->options.out, "folder for the files")
       ->type_name("DIR")
       ->required();
@@ -163,10 +164,12 @@ void add_outline_command(CLI::App& app, int& exit_code) {
   command->footer(
       "Writes map.pgm and map.yaml (for ROS map_server: the database's own map, else assembled "
       "from the\n"
-      "local grids), map.wld (for QGIS), signatures.geojson and trajectories.geojson, all in "
-      "metres of\n"
-      "the map frame. Files of an earlier run are replaced only after all have been written.");
-  add_examples(*command, {"zonepack outline --db map.db --out outline"});
+      "local grids, else a slice of the points or voxels at a robot's height), map.wld (for "
+      "QGIS),\n"
+      "signatures.geojson and trajectories.geojson, all in metres of the map frame. Files of an\n"
+      "earlier run are replaced only after all have been written.");
+  add_examples(*command, {"zonepack outline --db map.db --out outline",
+                          "zonepack outline --db cloud.pcd --slice 0.3,1.2 --out outline"});
   command->callback([arguments, &exit_code] {
     require_writable_folder(arguments->options.out, "--out");
     arguments->json.require_writable();

@@ -73,7 +73,11 @@ struct ReportOptions {
 MapDrawing ground_of(const ReportOptions& options) {
   if (options.source.path.empty()) return drawing_of(MapReader(options.folder));
   const std::unique_ptr<MapSource> source = open_source(options.source);
-  MapDrawing drawing = drawing_of(*source);
+  MapDrawing drawing = drawing_of(*source, options.source.slice);
+  if (!drawing.missing.empty()) {
+    drawing.warnings.push_back(options.source.name() + ": " + drawing.missing +
+                               "; no occupancy grid is drawn");
+  }
   source->require_unchanged();
   return drawing;
 }
@@ -135,6 +139,7 @@ void add_report_command(CLI::App& app, int& exit_code) {
                      "what to count besides the core; default features,scan,grid,blocks");
   add_source_options(*command, options->source,
                      "take the occupancy grid from this map instead of the packs");
+  add_slice_option(*command, options->source);
   add_examples(*command, {"zonepack report map --out map.html",
                           "zonepack report map --db map.db --out map.svg"});
   command->callback([options, &exit_code] {

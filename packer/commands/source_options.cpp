@@ -118,4 +118,22 @@ CLI::Option* add_source_options(CLI::App& command, SourceOptions& source, const 
   return db;
 }
 
+void add_slice_option(CLI::App& command, SourceOptions& source) {
+  command
+      .add_option_function<std::string>(
+          "--slice",
+          [&source](const std::string& text) {
+            const char* const expected =
+                "LOW,HIGH: metres above the floor, from 0.05 to 10, such as 0.2,1.5";
+            const auto [low, high] = numbers_of<2>("--slice", text, expected);
+            if (!(low >= 0.05 && low < high && high <= 10)) {
+              throw CLI::ValidationError("--slice", "'" + text + "' is not " + expected);
+            }
+            source.slice = {low, high};
+          },
+          "what is in a robot's way, metres above the floor, where a map has points or voxels and "
+          "no grids; default 0.2,1.5")
+      ->type_name("LOW,HIGH");
+}
+
 }  // namespace zonepack::packer

@@ -12,4 +12,7 @@ namespace zonepack::packer {
 // stands which its SLAM system left in a frame of its own. Wrong values are usage errors.
 CLI::Option* add_source_options(CLI::App& command, SourceOptions& source, const std::string& what);
 
+// Adds --slice, for commands that draw a floor plan.
+void add_slice_option(CLI::App& command, SourceOptions& source);
+
 }  // namespace zonepack::packer

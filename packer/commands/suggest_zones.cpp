@@ -89,12 +89,12 @@ Ground read_ground(const SuggestZonesOptions& options) {
   if (options.source) {
     const std::unique_ptr<MapSource> source = open_source(*options.source);
     require_signatures(source->outline(), options.source->name());
-    if (options.grid.empty()) ground.drawing = drawing_of(*source);
+    if (options.grid.empty()) ground.drawing = drawing_of(*source, options.source->slice);
     if (ground.drawing.image.cells.empty()) {
       throw std::runtime_error(
-          options.source->name() +
-          ": no local grids and no map of its own, so there is no floor plan "
-          "to draw zones on; add a grid in the same frame with --grid map.yaml");
+          options.source->name() + ": " + ground.drawing.missing +
+          "; there is no floor plan to draw zones on: add a grid in the same frame with --grid "
+          "map.yaml");
     }
     read_signatures(source->outline(), ground);
     source->require_unchanged();
@@ -294,7 +294,7 @@ void suggest_zones(const SuggestZonesOptions& options, std::ostream& text, order
     separator = ", ";
   }
   text << ") and " << counted(found.plan.portals.size(), "portal") << " from "
-       << ground.drawing.source << "\n";
+       << ground.drawing.origin() << "\n";
   if (split > 0) {
     text << counted(split, "zone was", "zones were") << " split to keep to "
          << size_text(options.max_zone_bytes) << "\n";
@@ -339,7 +339,10 @@ void add_suggest_zones_command(CLI::App& app, int& exit_code) {
   SuggestZonesOptions& options = arguments->options;
   CLI::App* const command = app.add_subcommand(
       "suggest-zones", "Draw zones by themselves: rooms, corridors and doors of a floor plan");
-  add_source_options(*command, arguments->source, "draw on the map's own grid, or its local grids");
+  add_source_options(*command, arguments->source,
+                     "draw on the map's own grid, its local grids, or a slice of its points or "
+                     "voxels at a robot's height");
+  add_slice_option(*command, arguments->source);
   command
       ->add_option("--grid", options.grid,
                    "draw on this grid of map_server (PGM or PNG); with --db, in the same frame")

@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
-#include "packer/decode/record_decoder.hpp"
-#include "packer/outline/occupancy_map.hpp"
+#include "packer/decode/zone_records.hpp"
 #include "packer/preview/png_file.hpp"
 #include "runtime/report/floor_plan_marks.hpp"
 
@@ -43,21 +44,18 @@ std::size_t merged(const MapImage& image, std::size_t most_cells) {
   return side;
 }
 
-// Adds the grids of one zone; returns how many.
-std::size_t add_grids(const MapReader& map, const fb::Zone& zone,
-                      std::optional<OccupancyMap>& grids) {
-  const PackReader pack = map.open_pack(zone);
-  const Result<DecodedPack> decoded = DecodedPack::decode(pack, mask_of(fb::PayloadKind::Grid));
-  if (!decoded) MapReader::fail(map.pack_path(zone), decoded.error());
-  std::size_t added = 0;
-  for (std::uint32_t i = 0; i < decoded->view().size(); ++i) {
-    const SignatureRecord record = decode_record(decoded->view(), i);
-    if (!record.pose || !record.grid || !(record.grid->cell_size > 0)) continue;
-    if (!grids) grids.emplace(decimal_of(record.grid->cell_size));
-    grids->add(*record.grid, *record.pose);
-    ++added;
-  }
-  return added;
+PayloadMask packed_in(const MapReader& map, const PayloadSet& wanted) {
+  PayloadMask mask = kCoreOnly;
+  if (wanted.grid) mask |= mask_of(fb::PayloadKind::Grid);
+  if (wanted.scan) mask |= mask_of(fb::PayloadKind::Scan);
+  if (wanted.blocks) mask |= mask_of(fb::PayloadKind::Blocks);
+  return mask & map.manifest().payload_mask();
+}
+
+void see_zone(const MapReader& map, const fb::Zone& zone, PayloadMask wanted,
+              const SeeSignature& see) {
+  ZoneRecords records(map, zone, wanted);
+  for (SignatureRecord record; records.next(record);) see(record);
 }
 
 }  // namespace
@@ -86,23 +84,26 @@ std::optional<report::PlanRaster> raster_of(const MapImage& image, std::size_t m
 }
 
 MapDrawing drawing_of(const MapReader& map) {
-  MapDrawing drawing;
-  drawing.source = "local grids";
-  if ((map.manifest().payload_mask() & mask_of(fb::PayloadKind::Grid)) == 0) return drawing;
-  std::optional<OccupancyMap> grids;
-  for (const fb::Zone* zone : *map.manifest().zones()) {
-    try {
-      drawing.grids += add_grids(map, *zone, grids);
-    } catch (const std::runtime_error& error) {
-      drawing.warnings.push_back(std::string(error.what()) + "; the grids of zone '" +
-                                 zone->name()->str() + "' are not drawn");
+  std::set<std::string> damages;
+  const EachSignature each = [&](const PayloadSet& wanted, const SeeSignature& see) {
+    const PayloadMask mask = packed_in(map, wanted);
+    if ((mask & ~kCoreOnly) == 0) return;
+    for (const fb::Zone* zone : *map.manifest().zones()) {
+      try {
+        see_zone(map, *zone, mask, see);
+      } catch (const std::runtime_error& error) {
+        damages.insert(std::string(error.what()) + "; zone '" + zone->name()->str() +
+                       "' is left out of the floor plan");
+      }
     }
-  }
+  };
+  MapDrawing drawing;
   try {
-    if (grids) drawing.image = grids->image();
+    drawing = drawing_of(each, {});
   } catch (const std::runtime_error& error) {
     drawing.warnings.push_back(std::string("no grid is drawn: ") + error.what());
   }
+  drawing.warnings.insert(drawing.warnings.begin(), damages.begin(), damages.end());
   return drawing;
 }
 

@@ -19,8 +19,9 @@ inline constexpr std::size_t kMostRasterCells = 1'000'000;
 std::optional<report::PlanRaster> raster_of(const MapImage& image,
                                             std::size_t most_cells = kMostRasterCells);
 
-// What the local grids in a map's packs add up to, by their signatures' optimised poses. A pack
-// that cannot be read is left out, with a warning; without local grids the image has no cells.
+// What the signatures in a map's packs show, by their optimised poses: local grids or, without
+// any, a slice of points or voxels at the usual heights. A pack that cannot be read is left out,
+// with a warning; where nothing is shown the image has no cells.
 MapDrawing drawing_of(const MapReader& map);
 
 }  // namespace zonepack::packer

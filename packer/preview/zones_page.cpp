@@ -155,7 +155,7 @@ std::vector<report::Fact> facts_of(const ZonesOnMap& map) {
        findings.faults.empty() ? "zonepack build takes this file" : "zonepack build refuses it",
        !findings.faults.empty()},
       {"warnings", format_count(findings.warnings.size()), ""},
-      {"occupancy grid", ground_text(map), ""}};
+      {"occupancy grid", ground_text(map), map.ground == nullptr ? "" : map.ground->detail}};
   if (map.ground == nullptr || map.places.empty()) return facts;
   const std::size_t orphans = map.partition.orphans.size();
   facts.push_back({"in zones", format_count(map.partition.zone_of.size() - orphans),

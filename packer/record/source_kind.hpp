@@ -41,6 +41,11 @@ class SourceUsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Above the floor, metres: what stands between is in the way of a robot.
+struct SliceHeights {
+  double low_m = 0.2, high_m = 1.5;
+};
+
 // How a source is opened. All commands share these options.
 struct SourceOptions {
   SourceOptions() = default;
@@ -52,6 +57,7 @@ struct SourceOptions {
   std::string kind;  // SourceKind::name; empty: found by content
   FramePlacement placement;
   double tile_m = 10;  // the side of a tile, where a cloud is cut into tiles
+  SliceHeights slice;  // for a floor plan, where the map has no grids
   // The zone at a place of the map, or any number for none: clouds are cut where it changes. Empty:
   // there are no zones.
   std::function<std::uint32_t(double x_m, double y_m, double z_m)> zone_at;

@@ -95,7 +95,7 @@ ARROWS = {
     "packer/sources/stella": "packer/align packer/record packer/sources/sqlite platform/base",
     "packer/sources": "packer/record packer/sources/cloud packer/sources/nvblox packer/sources/rtabmap"
                       " packer/sources/stella",
-    "packer/outline": "packer/record",
+    "packer/outline": "packer/record runtime/pack_format",
     "packer/zones": "platform/base runtime/pack_format runtime/pack_format/file",
     "packer/encode": "packer/record platform platform/base runtime/pack_format runtime/pack_format/file",
     "packer/decode": "packer/record platform/base runtime/pack_format runtime/pack_format/file",

@@ -70,7 +70,10 @@ if(TARGET zonepack)
   add_test(NAME system/nvblox
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/nvblox_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
-  set_tests_properties(system/stella system/clouds system/update_kinds system/nvblox PROPERTIES TIMEOUT 600)
+  add_test(NAME system/slice
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/slice_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/stella system/clouds system/update_kinds system/nvblox system/slice PROPERTIES TIMEOUT 600)
 endif()
 
 if(TARGET zonepack)

@@ -145,7 +145,7 @@ TEST(OutlineFiles, LeavesOutADamagedGridAndSaysSo) {
   std::string printed;
   const ordered_json json = outline_of(folder / "map.db", folder / "out", &printed);
   EXPECT_EQ(json["map"]["grids"], 1);
-  EXPECT_THAT(printed, AllOf(HasSubstr("signature 2"), HasSubstr("its grid is left out")));
+  EXPECT_THAT(printed, AllOf(HasSubstr("signature 2"), HasSubstr("left out of the floor plan")));
 }
 
 TEST(OutlineFiles, LeavesOldFilesWhenItFails) {
