@@ -184,9 +184,7 @@ FloorHeights FloorFinder::find() {
   if (!heights.z_m.empty()) return heights;
   throw NoFloorPlan(
       "no floor in its points or voxels (level ground of at least 2 m2 that is wider than a wall), "
-      "so "
-      "no "
-      "slice at a robot's height; if z is not up, turn the map before");
+      "so no slice at a robot's height; if z is not up, turn the map before");
 }
 
 }  // namespace zonepack::packer

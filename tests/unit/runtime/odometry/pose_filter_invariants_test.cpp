@@ -4,25 +4,11 @@
 
 #include <bit>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <random>
 
 #include "runtime/odometry/pose_filter.hpp"
+#include "tests/support/allocation_count/allocation_count.hpp"
 #include "tests/unit/runtime/odometry/drive.hpp"
-
-namespace {
-bool counting = false;
-std::size_t allocations = 0;
-}  // namespace
-
-void* operator new(std::size_t size) {
-  if (counting) ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  std::abort();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace zonepack {
 namespace {
@@ -72,16 +58,14 @@ TEST(PoseFilterInvariants, ItsUncertaintyIsHonest) {
 TEST(PoseFilterInvariants, TakesNoMemoryAfterConstruction) {
   Drive drive;
   drive.truth.reserve(4000);
-  counting = true;
-  allocations = 0;
+  const testing_support::AllocationCount allocations;
   drive.filter.start_at(0, {});
   for (int i = 0; i < 60; ++i) {
     drive.steps(50);
     drive.correct_now(i % 7 == 0 ? 3 : 0, 0, 0);
   }
   drive.filter.drift_until(drive.now() + 1000 * kMs);
-  counting = false;
-  EXPECT_EQ(allocations, 0u);
+  EXPECT_EQ(allocations.count(), 0u);
 }
 
 // The whole chain decides the same on every CPU and compiler: bits of the estimates of a noisy
