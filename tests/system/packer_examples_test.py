@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: packer_examples_test.py ZONEPACK DATA: every example that a help of zonepack shows works as it stands.
 
-Runs them on the sample database, in a folder where it is called map.db and a drive through it drive.txt.
+Runs them on the sample database, in a folder where it is called map.db, a drive through it drive.txt, and a cloud of two
+rooms cloud.pcd.
 """
 import re
 import shutil
@@ -10,6 +11,9 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import two_rooms  # noqa: E402
 
 # Later commands need what the earlier ones write.
 ORDER = ["outline", "suggest-zones", "check-zones", "build", "update", "diff", "log", "plan", "tune", "inspect", "verify",
@@ -26,6 +30,13 @@ def examples_in(text):
     return [line.strip() for line in below[1].splitlines() if line.strip()] if len(below) == 2 else []
 
 
+def write_cloud(path):
+    points = two_rooms.surface_points(step=0.08)
+    lines = ["VERSION 0.7", "FIELDS x y z", "SIZE 4 4 4", "TYPE F F F", "COUNT 1 1 1", f"WIDTH {len(points)}", "HEIGHT 1",
+             "VIEWPOINT 0 0 0 1 0 0 0", f"POINTS {len(points)}", "DATA ascii"]
+    path.write_text("\n".join(lines + ["{:.4f} {:.4f} {:.4f}".format(*point) for point in points]) + "\n")
+
+
 def main():
     zonepack, data = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
     listed = help_of(zonepack)
@@ -39,6 +50,7 @@ def main():
         shutil.copy(data / "hospital-small.db", Path(folder) / "map.db")
         shutil.copy(data / "zones.geojson", folder)
         shutil.copy(data / "scenario1_loop/base_groundtruth.txt", Path(folder) / "drive.txt")
+        write_cloud(Path(folder) / "cloud.pcd")
         bin_folder = zonepack.parent
         for line in [line for command in ORDER for line in examples.get(command, [])] + examples_in(listed):
             if not line.startswith("zonepack "):
