@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLevel_m = 0.1;
 constexpr std::int32_t kSide = 8;  // places of 0.25 m along a square
-constexpr int kWidePlaces = 7;     // of a place and its eight neighbors
+constexpr int kWidePlaces = 7;     // of a place and its eight neighbours
 constexpr std::uint32_t kLeastPlaces = 32;
 constexpr std::uint32_t kLeastOfSquare = 16;
 constexpr std::int32_t kSlopeLevels = 2;
@@ -76,7 +76,7 @@ std::uint64_t FloorFinder::covered(const Key& key) const {
   return (own ? own->covered : 0) | (next ? next->covered : 0);
 }
 
-// How many of the square's places are covered, with most of their neighbors and nothing above.
+// How many of the square's places are covered, with most of their neighbours and nothing above.
 std::uint32_t FloorFinder::wide_places(const Key& key) const {
   const std::uint64_t own = covered(key);
   const std::uint64_t clear = own & ~covered({key.square, key.level + 2});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A heavy neighbor of the map, as a language model is: reads a file of weights over and over, half
+// A heavy neighbour of the map, as a language model is: reads a file of weights over and over, half
 // of it on either core, and now and then takes memory for a moment, as for a prompt. tenant.sh runs
 // it beside zoned and zoneloc.
 //
