@@ -34,6 +34,7 @@ SignatureRecord scan_record(const std::vector<std::array<float, 3>>& points, std
   scan.local_transform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.5F};
   scan.data = {1, static_cast<std::int32_t>(points.size()), 5 | (2 << 3), {}};
   scan.data.data.resize(points.size() * sizeof(points[0]));
+  if (points.empty()) return record;
   std::memcpy(scan.data.data.data(), points.data(), scan.data.data.size());
   return record;
 }
