@@ -141,13 +141,14 @@ def check_refusals():
 
 
 def check_folder():
-    """Images in good order and bad ones among them, each at its second of the run."""
+    """Images in good order and bad ones among them, each at its second of the run: the last ones late enough for all that
+    is asked while the localizer is there."""
     here, elsewhere = of_signature("image", HERE), of_signature("image", ELSEWHERE)
     images = Path("images")
     for second, data in ((4, here), (5, elsewhere), (6, here), (7, here)):
         (images / f"{START_S + second}.5.jpg").write_bytes(data)
-    (images / f"{START_S + 8}.5.jpg").write_bytes(here[:len(here) // 2])
-    (images / f"{START_S + 9}.5.png").write_bytes(black_png(64, 48))
+    (images / f"{START_S + 16}.5.jpg").write_bytes(here[:len(here) // 2])
+    (images / f"{START_S + 17}.5.png").write_bytes(black_png(64, 48))
     robot = Robot()
     zoneloc = Locating("folder:images")
     zoneloc.says("bit for bit")
