@@ -9,11 +9,17 @@ cross_build() {  # ARCH [TARGET...]: install, sysroot, build; all targets by def
   build "$arch" ${2:+--target "${@:2}"}
 }
 
-do_cross() {  # ARCH
+do_cross() {  # ARCH [UNIT...]: the unit tests of all folders by default
+  local units=("${@:2}")
   use_arch "$1" || exit 2
   ready
-  cross_build "$arch"
-  ctest_of "$arch" "$arch units under qemu-user"
+  if ((${#units[@]})); then
+    cross_build "$arch" installed "${units[@]/#/test_}"
+    ctest_of "$arch" "$arch units under qemu-user: ${units[*]}" -R "^($(IFS='|' && echo "${units[*]}"))\$"
+  else
+    cross_build "$arch"
+    ctest_of "$arch" "$arch units under qemu-user"
+  fi
   make_packages "build/$arch" "$arch" "$sysroot"
 }
 
