@@ -47,7 +47,8 @@ double FloorHeights::median_m() const {
 }
 
 std::size_t FloorFinder::KeyHash::operator()(const Key& key) const noexcept {
-  return FloorSquareHash{}(key.square) ^ (static_cast<std::uint32_t>(key.level) * 0x85EBCA6BU);
+  const std::uint32_t level = static_cast<std::uint32_t>(key.level) * 0x85EBCA6BU;
+  return FloorSquareHash{}(key.square) ^ level;
 }
 
 void FloorFinder::add(double x_m, double y_m, double z_m) {

@@ -99,8 +99,9 @@ void for_each_voxel(const BlockCube& cube, const SeenPlace& place) {
         const std::optional<Seen> seen = seen_in(layer, bytes, static_cast<float>(voxel_m));
         bytes = bytes.subspan(voxel_bytes);
         if (!seen) continue;
-        place((corner[0] + i / 64 + 0.5) * voxel_m, (corner[1] + i / 8 % 8 + 0.5) * voxel_m,
-              (corner[2] + i % 8 + 0.5) * voxel_m, *seen);
+        const std::uint32_t x = i / 64, y = i / 8 % 8, z = i % 8;
+        place((corner[0] + x + 0.5) * voxel_m, (corner[1] + y + 0.5) * voxel_m,
+              (corner[2] + z + 0.5) * voxel_m, *seen);
       }
     }
     return;
