@@ -64,10 +64,7 @@ Source read_source(const CheckZonesOptions& options, const ZonePlan& plan) {
   if (options.out.empty()) return source;
   try {
     source.ground = drawing_of(*map, options.source->slice);
-    if (!source.ground.missing.empty()) {
-      source.ground.warnings.push_back(options.source->name() + ": " + source.ground.missing +
-                                       "; no occupancy grid is drawn");
-    }
+    source.ground.warn_if_missing(options.source->name());
   } catch (const std::runtime_error& error) {
     source.ground.warnings.push_back(options.source->name() + ": " + error.what() +
                                      "; no occupancy grid is drawn");

@@ -74,10 +74,7 @@ MapDrawing ground_of(const ReportOptions& options) {
   if (options.source.path.empty()) return drawing_of(MapReader(options.folder));
   const std::unique_ptr<MapSource> source = open_source(options.source);
   MapDrawing drawing = drawing_of(*source, options.source.slice);
-  if (!drawing.missing.empty()) {
-    drawing.warnings.push_back(options.source.name() + ": " + drawing.missing +
-                               "; no occupancy grid is drawn");
-  }
+  drawing.warn_if_missing(options.source.name());
   source->require_unchanged();
   return drawing;
 }

@@ -76,6 +76,10 @@ void draw_slice(const EachSignature& each, const SliceHeights& heights, MapDrawi
 
 }  // namespace
 
+void MapDrawing::warn_if_missing(const std::string& map) {
+  if (!missing.empty()) warnings.push_back(map + ": " + missing + "; no occupancy grid is drawn");
+}
+
 MapDrawing drawing_of(const EachSignature& each, const SliceHeights& slice) {
   MapDrawing plan;
   draw_grids(each, plan);

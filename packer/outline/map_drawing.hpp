@@ -22,6 +22,8 @@ struct MapDrawing {
   std::string missing;  // why there are no cells, and what to do: "no local grids, ..."
 
   std::string origin() const { return detail.empty() ? source : source + " " + detail; }
+  // For a picture that is drawn without a floor plan: adds a warning that names the map.
+  void warn_if_missing(const std::string& map);
 };
 
 using SeeSignature = std::function<void(const SignatureRecord&)>;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A heavy neighbour of the map, as a language model is: reads a file of weights over and over, half
-// of it on either core, and now and then takes memory for a moment, as for a prompt. tenant.sh runs
-// it beside zoned and zoneloc.
+// of it on either core, and now and then takes memory for a moment, as for a prompt. Run by
+// tenant.sh, together with zoned and zoneloc.
 //
 //   tenant FILE SECONDS BURST_BYTES read|mmap
 //

@@ -148,7 +148,7 @@ done
 drawn=$(jq .smallest_budget_bytes "$work/drawn.plan") squares=$(jq .smallest_budget_bytes "$work/squares.plan")
 whole=$(jq '.fixed_bytes + (([.zones[].charged_bytes] | add) / .slot_bytes | ceil) * (.slot_bytes + .table_bytes_per_slot)' \
   "$work/drawn.plan")
-for program in zoned zoneloc; do ldd "$work/$program"; done | awk '$3 ~ /^\// { print $3 }' | sort -u | xargs cat >/dev/null
+read_libraries "$work"/{zoned,zoneloc}
 awk -v folder="$mission" '!/^#/ && NF > 1 { print folder "/" $2 }' "$mission/rgb.txt" | xargs -d '\n' cat >/dev/null
 for limit in "${limits[@]}"; do
   head -c $((limit * 1048576 * 60 / 100)) /dev/urandom >"$work/weights-$limit"

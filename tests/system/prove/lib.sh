@@ -66,6 +66,12 @@ drop_caches() {
   if [ -w /proc/sys/vm/drop_caches ]; then echo 3 >/proc/sys/vm/drop_caches; fi
 }
 
+# Outside of any group, before a drive: the kernel charges a file's pages to who reads them first, and far more of them
+# than a program maps, which is what counts as its own.
+read_libraries() {  # PROGRAM...
+  ldd "$@" | awk '$3 ~ /^\// { print $3 }' | sort -u | xargs cat >/dev/null
+}
+
 mib() { awk -v n="$1" 'BEGIN { printf "%.2f", n / 1048576 }'; }  # BYTES
 
 # The same drive under less and less, until it fails: a proof that cannot fail shows nothing. Uses $work and fail;

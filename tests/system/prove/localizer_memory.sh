@@ -6,8 +6,8 @@
 # Then the same under less, until it fails, which shows that it can. lost: nothing says where the robot starts, so
 # zoneloc searches the map, zone by zone.
 # MISSION: a folder with can0.log, base_groundtruth.txt, calibration.yaml, rgb.txt and its images. They are read before,
-# outside of the group: a camera's images come from no file. So are the libraries: the kernel charges a file's pages to
-# who reads them first and far more of them than the program maps, which is what counts as its own. Exit code 77 where nobody can limit memory, or without images.
+# outside of the group: a camera's images come from no file. So are the libraries (read_libraries). Exit code 77 where
+# nobody can limit memory, or without images.
 set -euo pipefail
 bin=$1 source=$2 db=$3 mission=$(realpath "$4") speed=$5 lost=${6:-}
 . "$(dirname "$0")/lib.sh"
@@ -74,7 +74,7 @@ for program in zoned zoneloc; do strip -o "$work/$program" "$bin/$program"; done
 budget=$("$bin/zonepack" plan "$work/map" --json - 2>/dev/null | jq .smallest_budget_bytes)
 limit=$((budget + of_zoned + of_zoneloc))
 cat "$mission/can0.log" >/dev/null
-for program in zoned zoneloc; do ldd "$work/$program"; done | awk '$3 ~ /^\// { print $3 }' | sort -u | xargs cat >/dev/null
+read_libraries "$work"/{zoned,zoneloc}
 awk -v folder="$mission" '!/^#/ && NF > 1 { print folder "/" $2 }' "$mission/rgb.txt" | xargs -d '\n' cat >/dev/null
 drive together $limit
 run=$work/together

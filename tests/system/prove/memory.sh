@@ -131,11 +131,10 @@ judge() {  # NAME LIMIT
   fi
 }
 
-# Drops caches, then has the libraries read outside of the group: the kernel charges a file's pages to who reads them
-# first, which would be zoned in some drives and what watches it in others. All that zoned maps counts as resident.
+# Without the libraries zoned would pay for them in some drives and what watches it in others.
 drop_all_but_libraries() {
   drop_caches
-  ldd "$work/zoned" | awk '$3 ~ /^\// { print $3 }' | xargs cat >/dev/null
+  read_libraries "$work/zoned"
 }
 
 strip -o "$work/zoned" "$bin/zoned"  # as it is installed: symbols would be read ahead, and charged
