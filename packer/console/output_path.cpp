@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse(const std::string& path, const std::string& text) {
+[[noreturn]] void refuse_output(const std::string& path, const std::string& text) {
   throw std::runtime_error(path + ": cannot be written: " + text);
 }
 
@@ -32,22 +32,22 @@ void require_writable(const std::string& file) {
   std::error_code ignored;
   const fs::file_status there = fs::status(file, ignored);
   if (fs::is_directory(there)) {
-    refuse(file, "a folder of that name exists; give the name of a file");
+    refuse_output(file, "a folder of that name exists; give the name of a file");
   }
   // A device or a pipe is written in place.
   if (fs::exists(there) && !fs::is_regular_file(there)) return;
   const fs::path folder = folder_around(file);
   const fs::file_status status = fs::status(folder, ignored);
   if (!fs::exists(status)) {
-    refuse(file, "there is no folder " + folder.string() + "; create it first: mkdir -p " +
-                     shell_quoted(folder.string()));
+    refuse_output(file, "there is no folder " + folder.string() + "; create it first: mkdir -p " +
+                            shell_quoted(folder.string()));
   }
   if (!fs::is_directory(status)) {
-    refuse(file, folder.string() + " is no folder; give another path");
+    refuse_output(file, folder.string() + " is no folder; give another path");
   }
   if (!takes_files(folder)) {
-    refuse(file, "its folder " + folder.string() + " takes no new files: " + std::strerror(errno) +
-                     "; give another path");
+    refuse_output(file, "its folder " + folder.string() +
+                            " takes no new files: " + std::strerror(errno) + "; give another path");
   }
 }
 

@@ -13,28 +13,28 @@
 namespace zonepack {
 namespace {
 
-using Kind = ExpectedMotion::Kind;
+using MotionKind = ExpectedMotion::Kind;
 
 constexpr double kMostOff = 0.05;  // of a motion that was measured with a tape
 
 // What the moves say of the sides, apart from how far.
-std::vector<WheelHint> expected_sides(const OdometrySettings& o, Kind kind,
+std::vector<WheelHint> expected_sides(const OdometrySettings& o, MotionKind kind,
                                       const std::vector<SignalMove>& moves,
                                       const std::string& when) {
   const double left = moves[0].moved_m, right = moves[1].moved_m;
   SideFaults faults;
   switch (kind) {
-    case Kind::kForward:
-    case Kind::kBackward: {
-      const double way = kind == Kind::kForward ? 1 : -1;
+    case MotionKind::kForward:
+    case MotionKind::kBackward: {
+      const double way = kind == MotionKind::kForward ? 1 : -1;
       faults.left_sign = left * way < 0;
       faults.right_sign = right * way < 0;
       if (!faults.left_sign && !faults.right_sign) return {};
       return {sign_hint(o, faults, when)};
     }
-    case Kind::kLeft:
-    case Kind::kRight: {
-      const double way = kind == Kind::kLeft ? 1 : -1;
+    case MotionKind::kLeft:
+    case MotionKind::kRight: {
+      const double way = kind == MotionKind::kLeft ? 1 : -1;
       if (left * way < 0 && right * way > 0) return {};
       if (left * way > 0 && right * way < 0) {
         faults.swapped = true;
@@ -47,12 +47,12 @@ std::vector<WheelHint> expected_sides(const OdometrySettings& o, Kind kind,
       faults.right_sign = !faults.left_sign;
       return {sign_hint(o, faults, ": both went the same way" + when)};
     }
-    case Kind::kLeftWheel:
-    case Kind::kRightWheel:
+    case MotionKind::kLeftWheel:
+    case MotionKind::kRightWheel:
       break;
   }
   const bool left_turned = std::abs(left) > std::abs(right);
-  faults.swapped = left_turned != (kind == Kind::kLeftWheel);
+  faults.swapped = left_turned != (kind == MotionKind::kLeftWheel);
   (left_turned ? faults.left_sign : faults.right_sign) = (left_turned ? left : right) < 0;
   std::vector<WheelHint> hints;
   if (faults.swapped) {
@@ -69,8 +69,8 @@ std::vector<WheelHint> expected_amount(const Settings& settings, const ExpectedM
   const double left = std::abs(moves[0].moved_m), right = std::abs(moves[1].moved_m);
   const WheelGeometry& geometry = o.wheels.geometry;
   switch (expected.kind) {
-    case Kind::kForward:
-    case Kind::kBackward: {
+    case MotionKind::kForward:
+    case MotionKind::kBackward: {
       const double way = (left + right) / 2;
       const double times = way / *expected.amount;
       if (std::abs(times - 1) <= kMostOff) return {};
@@ -78,8 +78,8 @@ std::vector<WheelHint> expected_amount(const Settings& settings, const ExpectedM
                          "the wheels report " + short_number(way) + " m of " +
                              short_number(*expected.amount) + " m")};
     }
-    case Kind::kLeft:
-    case Kind::kRight: {
+    case MotionKind::kLeft:
+    case MotionKind::kRight: {
       const double turn = (left + right) / (geometry.track_m * geometry.slip_factor) * 180 / kPi;
       const double times = turn / *expected.amount;
       if (std::abs(times - 1) <= kMostOff) return {};
@@ -87,8 +87,8 @@ std::vector<WheelHint> expected_amount(const Settings& settings, const ExpectedM
                          "the wheels report a turn of " + short_number(turn) + " of " +
                              short_number(*expected.amount) + " degrees")};
     }
-    case Kind::kLeftWheel:
-    case Kind::kRightWheel:
+    case MotionKind::kLeftWheel:
+    case MotionKind::kRightWheel:
       break;
   }
   const double way = std::max(left, right);
@@ -108,7 +108,8 @@ std::vector<WheelHint> expectation_hints(const Settings& settings, const Expecte
   const OdometrySettings& o = settings.odometry;
   const OdometryModel model = o.wheels.model;
   const std::string when = " (expected: " + instruction_text(expected) + ")";
-  const bool one_wheel = expected.kind == Kind::kLeftWheel || expected.kind == Kind::kRightWheel;
+  const bool one_wheel =
+      expected.kind == MotionKind::kLeftWheel || expected.kind == MotionKind::kRightWheel;
   std::vector<WheelHint> hints;
   bool any = false;
   for (const SignalMove& move : moves) any = any || move.moved;
@@ -142,7 +143,7 @@ std::vector<WheelHint> expectation_hints(const Settings& settings, const Expecte
         {"sign", text + " counts backwards" + when, {"odometry:", inverted_too(o, wrong)}});
   }
   if (!expected.amount) return hints;
-  const bool turn = expected.kind == Kind::kLeft || expected.kind == Kind::kRight;
+  const bool turn = expected.kind == MotionKind::kLeft || expected.kind == MotionKind::kRight;
   if (model == OdometryModel::kTwist) {
     const double true_amount = turn ? *expected.amount * kPi / 180 : *expected.amount;
     const double times = std::abs(moves[turn ? 1 : 0].moved_m) / true_amount;

@@ -10,14 +10,15 @@
 namespace zonepack {
 namespace {
 
-using Kind = ExpectedMotion::Kind;
+using MotionKind = ExpectedMotion::Kind;
 
-constexpr std::pair<std::string_view, Kind> kWords[] = {{"forward", Kind::kForward},
-                                                        {"backward", Kind::kBackward},
-                                                        {"left", Kind::kLeft},
-                                                        {"right", Kind::kRight},
-                                                        {"left-wheel", Kind::kLeftWheel},
-                                                        {"right-wheel", Kind::kRightWheel}};
+constexpr std::pair<std::string_view, MotionKind> kWords[] = {
+    {"forward", MotionKind::kForward},
+    {"backward", MotionKind::kBackward},
+    {"left", MotionKind::kLeft},
+    {"right", MotionKind::kRight},
+    {"left-wheel", MotionKind::kLeftWheel},
+    {"right-wheel", MotionKind::kRightWheel}};
 
 }  // namespace
 
@@ -46,27 +47,27 @@ std::string instruction_text(const ExpectedMotion& expected) {
     return before + amount + after;
   };
   switch (expected.kind) {
-    case Kind::kForward:
+    case MotionKind::kForward:
       return of("drive", "m", " forward");
-    case Kind::kBackward:
+    case MotionKind::kBackward:
       return of("drive", "m", " backward");
-    case Kind::kLeft:
+    case MotionKind::kLeft:
       return of("turn on the spot", "degrees", " to the left (counter-clockwise)");
-    case Kind::kRight:
+    case MotionKind::kRight:
       return of("turn on the spot", "degrees", " to the right (clockwise)");
-    case Kind::kLeftWheel:
+    case MotionKind::kLeftWheel:
       return of("turn the left wheel, and only it,", "turns", " forward by hand");
-    case Kind::kRightWheel:
+    case MotionKind::kRightWheel:
       break;
   }
   return of("turn the right wheel, and only it,", "turns", " forward by hand");
 }
 
-int expected_sign(OdometryModel model, Kind kind, std::size_t index) noexcept {
+int expected_sign(OdometryModel model, MotionKind kind, std::size_t index) noexcept {
   using Model = OdometryModel;
-  const bool ahead = kind == Kind::kForward || kind == Kind::kBackward;
-  const bool turn = kind == Kind::kLeft || kind == Kind::kRight;
-  const int way = kind == Kind::kBackward || kind == Kind::kRight ? -1 : 1;
+  const bool ahead = kind == MotionKind::kForward || kind == MotionKind::kBackward;
+  const bool turn = kind == MotionKind::kLeft || kind == MotionKind::kRight;
+  const int way = kind == MotionKind::kBackward || kind == MotionKind::kRight ? -1 : 1;
   switch (model) {
     case Model::kTwist:
       if (ahead) return index == 0 ? way : 0;
@@ -86,7 +87,7 @@ int expected_sign(OdometryModel model, Kind kind, std::size_t index) noexcept {
   const bool left = index % 2 == 0;  // also of mecanum: front left, front right, rear left ...
   if (ahead) return way;
   if (turn) return left ? -way : way;
-  return left == (kind == Kind::kLeftWheel) ? 1 : 0;
+  return left == (kind == MotionKind::kLeftWheel) ? 1 : 0;
 }
 
 }  // namespace zonepack

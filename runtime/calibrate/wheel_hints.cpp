@@ -76,7 +76,7 @@ std::optional<WheelHint> same_signal(const OdometrySettings& odometry) {
 }
 
 // A counter that is read as a speed.
-std::optional<WheelHint> counted(const Settings& settings, const WheelEvidence& evidence) {
+std::optional<WheelHint> counter_hint(const Settings& settings, const WheelEvidence& evidence) {
   const OdometrySettings& o = settings.odometry;
   const auto keys = signal_keys(o);
   const char* const model = other_reading(o.wheels.model);
@@ -174,7 +174,7 @@ std::vector<WheelHint> wheel_hints(const Settings& settings, const WheelEvidence
   std::vector<WheelHint> hints;
   // Nothing that is measured means anything while these hold.
   if (auto same = same_signal(settings.odometry)) return {*same};
-  if (auto counter = counted(settings, evidence)) return {*counter};
+  if (auto counter = counter_hint(settings, evidence)) return {*counter};
   if (evidence.expected) {
     hints = against_expectation(settings, evidence);
   } else if (has_sides(settings.odometry.wheels.model)) {

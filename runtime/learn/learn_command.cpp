@@ -157,9 +157,8 @@ Outcome<void> learn(const LearnArguments& arguments) {
     all.untrained.add(rows.back().untrained);
     const std::vector<std::string> unknown = unknown_zones(drive, graph);
     if (!unknown.empty()) {
-      warn(drive.name + ": " + zonepack::counted(unknown.size(), "zone") + " that the map " +
-           arguments.map + " does not have, passed over: " + unknown.front() +
-           (unknown.size() > 1 ? ", ..." : ""));
+      warn(drive.name + ": " + counted(unknown.size(), "zone") + " that the map " + arguments.map +
+           " does not have, passed over: " + unknown.front() + (unknown.size() > 1 ? ", ..." : ""));
     }
     if (rows.back().known.steps == 0) {
       return failure(drive.name + ": holds no step from a zone to a neighbour of it on the map " +
@@ -177,11 +176,10 @@ Outcome<void> learn(const LearnArguments& arguments) {
   std::ostream& text = arguments.json == "-" ? std::cerr : std::cout;
   const ByteCount charged =
       Transitions::table_bytes(catalog->zones.size(), catalog->portals.size());
-  text << table(*drives, rows, all) << arguments.out << ": "
-       << zonepack::counted(bytes.size(), "byte") << ", "
-       << zonepack::counted(learned.contexts.size(), "context") << " of "
-       << zonepack::counted(learned.steps, "step") << "; takes "
-       << zonepack::counted(charged, "byte") << " of a budget\n";
+  text << table(*drives, rows, all) << arguments.out << ": " << counted(bytes.size(), "byte")
+       << ", " << counted(learned.contexts.size(), "context") << " of "
+       << counted(learned.steps, "step") << "; takes " << counted(charged, "byte")
+       << " of a budget\n";
   if (arguments.json.empty()) return {};
   std::string json =
       "{\n  \"map\": " + json_quoted(arguments.map) +

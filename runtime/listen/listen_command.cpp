@@ -18,7 +18,7 @@
 namespace zonepack {
 namespace {
 
-constexpr const char* kProgram = "zoned listen";
+constexpr const char* kListenProgram = "zoned listen";
 constexpr std::int64_t kPicture_ns = 200'000'000;
 constexpr std::int64_t kBlock_ns = 1'000'000'000;
 constexpr int kNap_ms = 10;
@@ -50,10 +50,10 @@ Outcome<std::optional<TruthTrack>> read_reference(const ListenArguments& argumen
 }
 
 // Listening from the first frame to the end, and how it is shown meanwhile.
-class Session {
+class ListenSession {
  public:
-  Session(const ListenArguments& arguments, const Settings& settings, FrameFeed& feed,
-          Reference reference)
+  ListenSession(const ListenArguments& arguments, const Settings& settings, FrameFeed& feed,
+                Reference reference)
       : arguments_(arguments),
         feed_(feed),
         frames_(feed),
@@ -105,7 +105,7 @@ class Session {
     }
     if (const auto message = feed_.message()) {
       style_.note = *message;
-      if (!on_screen_) std::cerr << kProgram << ": " << *message << '\n';
+      if (!on_screen_) std::cerr << kListenProgram << ": " << *message << '\n';
     }
     if (feed_.ended() || end_was_asked()) return false;
     const double heard_s = static_cast<double>(feed_.now_ns() - from_ns_) * 1e-9;
@@ -174,7 +174,7 @@ Outcome<void> listen_and_report(const ListenArguments& arguments) {
   const auto loaded = load_usable_settings(arguments.config);
   if (!loaded) return loaded.error();
   for (const std::string& text : loaded->warnings) {
-    std::cerr << kProgram << ": warning: " << text << '\n';
+    std::cerr << kListenProgram << ": warning: " << text << '\n';
   }
   const Settings& settings = loaded->settings;
   const auto track = read_reference(arguments, settings);
@@ -186,7 +186,8 @@ Outcome<void> listen_and_report(const ListenArguments& arguments) {
   }
   auto feed = FrameFeed::open(arguments.feed, settings);
   if (!feed) return feed.error();
-  const auto session = std::make_unique<Session>(arguments, settings, **feed, std::move(reference));
+  const auto session =
+      std::make_unique<ListenSession>(arguments, settings, **feed, std::move(reference));
   session->listen();
 
   if (const CanLogSummary* const log = (*feed)->log_summary()) {
@@ -203,7 +204,7 @@ Outcome<void> listen_and_report(const ListenArguments& arguments) {
   if (!session->heard_odometry() && !session->stopped()) {
     failed.add(failure(mismatch.empty() ? "no signal of odometry could be read" : mismatch));
   } else if (!mismatch.empty()) {
-    std::cerr << kProgram << ": " << mismatch << '\n';
+    std::cerr << kListenProgram << ": " << mismatch << '\n';
   }
   if (arguments.expected && !picture.hints.empty()) {
     failed.add(failure("the robot did not move as expected (" +
@@ -216,7 +217,7 @@ Outcome<void> listen_and_report(const ListenArguments& arguments) {
 
 int run_listen(const ListenArguments& arguments) {
   const auto done = listen_and_report(arguments);
-  return done ? 0 : report_failure(kProgram, done.error());
+  return done ? 0 : report_failure(kListenProgram, done.error());
 }
 
 }  // namespace zonepack

@@ -28,7 +28,7 @@ namespace {
 constexpr ByteCount kOverhead =
     12 * kMiB;  // runtime/README.md: what a run takes besides its budget
 
-struct Row {
+struct CheckRow {
   enum class Kind { kGood, kWeak, kRefused };
   Kind kind = Kind::kGood;
   std::string name, found, mend;
@@ -54,14 +54,14 @@ class Check {
 
  private:
   void good(std::string name, std::string found) {
-    rows_.push_back({Row::Kind::kGood, std::move(name), std::move(found), ""});
+    rows_.push_back({CheckRow::Kind::kGood, std::move(name), std::move(found), ""});
   }
   void refuse(std::string name, std::string found, std::string mend = "") {
-    rows_.push_back({Row::Kind::kRefused, std::move(name), std::move(found), std::move(mend)});
+    rows_.push_back({CheckRow::Kind::kRefused, std::move(name), std::move(found), std::move(mend)});
   }
   // What --allow-degraded goes on without.
   void refuse_privilege(std::string name, std::string found, std::string mend) {
-    rows_.push_back({arguments_.allow_degraded ? Row::Kind::kWeak : Row::Kind::kRefused,
+    rows_.push_back({arguments_.allow_degraded ? CheckRow::Kind::kWeak : CheckRow::Kind::kRefused,
                      std::move(name), std::move(found), std::move(mend)});
   }
 
@@ -74,7 +74,7 @@ class Check {
     inputs_ = std::move(*inputs);
     good("settings", arguments_.config);
     for (const std::string& text : inputs_.warnings) {
-      rows_.push_back({Row::Kind::kWeak, "settings", text, ""});
+      rows_.push_back({CheckRow::Kind::kWeak, "settings", text, ""});
     }
     good("map", inputs_.catalog.folder + ", " + counted(inputs_.catalog.zones.size(), "zone"));
     return true;
@@ -91,7 +91,7 @@ class Check {
     }
     map_ = std::move(*model);
     if (map_->warning) {
-      rows_.push_back({Row::Kind::kWeak, "budget", *map_->warning, "see zonepack plan"});
+      rows_.push_back({CheckRow::Kind::kWeak, "budget", *map_->warning, "see zonepack plan"});
     } else {
       good("budget",
            short_bytes(map_->limits.budget) + " (" + counted(map_->limits.budget, "byte") + ")");
@@ -179,7 +179,7 @@ class Check {
     } else if (!source) {
       refuse(name, source.error().message);
     } else if (const std::string warning = (*source)->warning(); !warning.empty()) {
-      rows_.push_back({Row::Kind::kWeak, name, warning, ""});
+      rows_.push_back({CheckRow::Kind::kWeak, name, warning, ""});
     } else {
       good(name, arguments_.source.name);
     }
@@ -195,7 +195,7 @@ class Check {
     for (std::uint64_t i = 0; i < kMostFrames && frames.next(); ++i) continue;
     const std::string mismatch =
         frames.mismatch(inputs_.settings.odometry.wheels, arguments_.source.name, log.summary());
-    if (!mismatch.empty()) rows_.push_back({Row::Kind::kWeak, "CAN frames", mismatch, ""});
+    if (!mismatch.empty()) rows_.push_back({CheckRow::Kind::kWeak, "CAN frames", mismatch, ""});
   }
 
   void lines() {
@@ -234,17 +234,18 @@ class Check {
     if (!realtime.cpu.empty()) needs.cpu = static_cast<unsigned>(std::stoul(realtime.cpu));
     if (map_) needs.locked_bytes = map_->limits.budget + kOverhead;
     for (BoardFact& fact : inspect_board(needs)) {
-      rows_.push_back({fact.good ? Row::Kind::kGood : Row::Kind::kWeak, std::move(fact.name),
-                       std::move(fact.found), std::move(fact.mend)});
+      rows_.push_back({fact.good ? CheckRow::Kind::kGood : CheckRow::Kind::kWeak,
+                       std::move(fact.name), std::move(fact.found), std::move(fact.mend)});
     }
   }
 
   int print() const {
     std::size_t width = 0;
-    for (const Row& row : rows_) width = std::max(width, row.name.size());
+    for (const CheckRow& row : rows_) width = std::max(width, row.name.size());
     std::size_t refused = 0, weak = 0;
-    for (const Row& row : rows_) {
-      const bool no = row.kind == Row::Kind::kRefused, so_so = row.kind == Row::Kind::kWeak;
+    for (const CheckRow& row : rows_) {
+      const bool no = row.kind == CheckRow::Kind::kRefused,
+                 so_so = row.kind == CheckRow::Kind::kWeak;
       refused += no;
       weak += so_so;
       std::cout << (no      ? "REFUSED  "
@@ -263,7 +264,7 @@ class Check {
   const RunArguments& arguments_;
   RunInputs inputs_;
   std::unique_ptr<MapModel> map_;
-  std::vector<Row> rows_;
+  std::vector<CheckRow> rows_;
 };
 
 }  // namespace

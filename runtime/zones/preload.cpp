@@ -19,9 +19,6 @@ constexpr double kPortalSlack_m = 0.1;
 
 constexpr double kLeastStep_m = 0.05;
 
-double dot(Point2 a, Point2 b) noexcept { return a.x_m * b.x_m + a.y_m * b.y_m; }
-Point2 operator-(Point2 a, Point2 b) noexcept { return {a.x_m - b.x_m, a.y_m - b.y_m}; }
-
 Point2 moved(Point2 from, Point2 direction, double distance_m) noexcept {
   return {from.x_m + direction.x_m * distance_m, from.y_m + direction.y_m * distance_m};
 }

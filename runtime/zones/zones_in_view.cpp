@@ -13,9 +13,6 @@ constexpr double kHalfAngle_rad = 40 * kPi / 180;
 // A portal may lie this far off the borders that it joins.
 constexpr double kSlack_m = 0.1;
 
-double dot(Point2 a, Point2 b) noexcept { return a.x_m * b.x_m + a.y_m * b.y_m; }
-Point2 operator-(Point2 a, Point2 b) noexcept { return {a.x_m - b.x_m, a.y_m - b.y_m}; }
-
 // The part of the way from `from` to `to` at which it leaves through the exit; 2: it does not.
 double leaves_at(const Exit& exit, Point2 from, Point2 to) noexcept {
   const double along = dot(to - from, exit.outward);

@@ -6,6 +6,9 @@
 
 namespace zonepack::localize {
 
+// Distances in pixels are given for a camera of this focal length, and scale with it.
+inline constexpr double kUsualFocal_px = 385;
+
 // A pinhole camera with plumb_bob distortion (OpenCV's k1 k2 p1 p2 k3), and where it sits on the
 // robot. Camera frame: x right, y down, z forward. Pixels count from the centre of the upper left
 // one.

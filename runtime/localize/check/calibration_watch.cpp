@@ -12,12 +12,11 @@
 namespace zonepack::localize {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kUsualFocal_px = 385;
+constexpr double kDegree_rad = std::numbers::pi / 180;
 constexpr double kLoss_px = 2;  // scale of Geman and McClure's loss, at the usual focal length
 // How a robot stands over the floor that the map's signatures were seen from.
-constexpr double kFloorSigma_m = 0.01, kTiltSigma_rad = 0.3 * kDegree;
-constexpr CameraTraits kLeastOfNote = {0.006, 0.012, 0.2 * kDegree, 0.2 * kDegree};
+constexpr double kFloorSigma_m = 0.01, kTiltSigma_rad = 0.3 * kDegree_rad;
+constexpr CameraTraits kLeastOfNote = {0.006, 0.012, 0.2 * kDegree_rad, 0.2 * kDegree_rad};
 
 // What maps are off by themselves, which no number of fixes averages out, as a standard deviation:
 // this share of what is of note. Four pairs of a map and a drive have 0.06 %, 0.12 cm, 0.03

@@ -17,8 +17,6 @@
 namespace zonepack::localize {
 namespace {
 
-// Distances in pixels are of a camera whose focal length is 385 px, and scale with it.
-constexpr double kUsualFocal_px = 385;
 constexpr double kInlier_px = 3;
 constexpr double kSecondPass_px = 8;
 constexpr double kSecondPassDistance = 80;  // of 256 bits

@@ -11,7 +11,7 @@ namespace zonepack::localize {
 namespace {
 
 // Seconds with all nine decimals; stamps are not before 1970.
-std::string seconds_text(std::int64_t t_ns) {
+std::string stamp_text(std::int64_t t_ns) {
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
   std::array<char, 40> text{};
   std::snprintf(text.data(), text.size(), "%lld.%09lld", static_cast<long long>(t_ns / kSecond_ns),
@@ -54,8 +54,8 @@ std::string fixes_text(std::span<const LoopView> views, std::span<const TimedCom
     if (!view.result.accepted) continue;
     const PoseCorrection& fix = view.fix;
     const std::int64_t late_ns = fix.received_ns - fix.stamp_ns;
-    std::string line = seconds_text(view.image.recorded_stamp_ns) + ' ' +
-                       seconds_text(view.image.recorded_stamp_ns + late_ns);
+    std::string line = stamp_text(view.image.recorded_stamp_ns) + ' ' +
+                       stamp_text(view.image.recorded_stamp_ns + late_ns);
     for (const double value : {fix.T_map_base.x_m, fix.T_map_base.y_m, fix.T_map_base.yaw_rad,
                                fix.sigma_x_m, fix.sigma_y_m, fix.sigma_yaw_rad, fix.view_m}) {
       add(line, value);

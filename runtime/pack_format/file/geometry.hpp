@@ -14,6 +14,9 @@ struct Point2 {
   friend bool operator==(const Point2&, const Point2&) = default;
 };
 
+inline Point2 operator-(Point2 a, Point2 b) noexcept { return {a.x_m - b.x_m, a.y_m - b.y_m}; }
+inline double dot(Point2 a, Point2 b) noexcept { return a.x_m * b.x_m + a.y_m * b.y_m; }
+
 struct Segment2 {
   Point2 p, q;
 };

@@ -17,13 +17,13 @@ namespace {
 using test_support::are_numbers;
 using test_support::NumberedFile;
 
-constexpr std::size_t kBytes = 64 * 1024;
+constexpr std::size_t kFileBytes = 64 * 1024;
 
 class Mapping {
  public:
   explicit Mapping(const NumberedFile& file)
-      : at_(::mmap(nullptr, kBytes, PROT_READ, MAP_SHARED, file.fd(), 0)) {}
-  ~Mapping() { ::munmap(at_, kBytes); }
+      : at_(::mmap(nullptr, kFileBytes, PROT_READ, MAP_SHARED, file.fd(), 0)) {}
+  ~Mapping() { ::munmap(at_, kFileBytes); }
   const std::byte* bytes() const { return static_cast<const std::byte*>(at_); }
 
  private:
@@ -31,7 +31,7 @@ class Mapping {
 };
 
 TEST(GuardedCopy, CopiesWhatIsThere) {
-  const NumberedFile file(kBytes);
+  const NumberedFile file(kFileBytes);
   const Mapping mapping(file);
   std::vector<std::byte> out(1000);
   EXPECT_TRUE(guarded_copy(out.data(), mapping.bytes() + 5000, out.size()));
@@ -40,13 +40,13 @@ TEST(GuardedCopy, CopiesWhatIsThere) {
 }
 
 TEST(GuardedCopy, SaysNoAgainAndAgainWhereTheFileWasCutShort) {
-  NumberedFile file(kBytes);
+  NumberedFile file(kFileBytes);
   const Mapping mapping(file);
   file.cut_to(5000);  // ends in the second page
-  std::vector<std::byte> out(kBytes);
+  std::vector<std::byte> out(kFileBytes);
   for (int i = 0; i < 3; ++i) {
-    EXPECT_FALSE(guarded_copy(out.data(), mapping.bytes(), kBytes));
-    EXPECT_FALSE(guarded_copy(out.data(), mapping.bytes() + kBytes - 1, 1));
+    EXPECT_FALSE(guarded_copy(out.data(), mapping.bytes(), kFileBytes));
+    EXPECT_FALSE(guarded_copy(out.data(), mapping.bytes() + kFileBytes - 1, 1));
     EXPECT_TRUE(guarded_copy(out.data(), mapping.bytes(), 5000));
   }
   EXPECT_TRUE(are_numbers(std::span(out).first(5000), 0));
@@ -58,12 +58,12 @@ TEST(GuardedCopy, ServesThreadsAtTheSameTime) {
     std::vector<std::jthread> threads;
     for (std::size_t i = 0; i < right.size(); ++i) {
       threads.emplace_back([&right, i] {
-        NumberedFile file(kBytes);
+        NumberedFile file(kFileBytes);
         const Mapping mapping(file);
         if (i % 2 == 1) file.cut_to(0);
-        std::vector<std::byte> out(kBytes);
+        std::vector<std::byte> out(kFileBytes);
         for (int round = 0; round < 200; ++round) {
-          right[i] += guarded_copy(out.data(), mapping.bytes(), kBytes) == (i % 2 == 0) ? 1 : 0;
+          right[i] += guarded_copy(out.data(), mapping.bytes(), kFileBytes) == (i % 2 == 0) ? 1 : 0;
         }
       });
     }
@@ -77,7 +77,7 @@ class GuardedCopyDeathTest : public testing::Test {
   GuardedCopyDeathTest() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
 
   static void fault_after_a_copy() {
-    NumberedFile file(kBytes);
+    NumberedFile file(kFileBytes);
     const Mapping mapping(file);
     std::byte out{};
     guarded_copy(&out, mapping.bytes(), 1);

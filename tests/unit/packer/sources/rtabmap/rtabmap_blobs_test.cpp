@@ -15,8 +15,8 @@ namespace {
 using test_support::bytes_of;
 using test_support::level_pose;
 
-const std::string kDatabase = "map.db";
-const CellPlace kNode{.file = &kDatabase, .signature = 7, .column = "Data.scan_info"};
+const std::string kBlobDatabase = "map.db";
+const CellPlace kNode{.file = &kBlobDatabase, .signature = 7, .column = "Data.scan_info"};
 
 std::vector<float> with_local(std::vector<float> values) {
   const Transform local = level_pose(1, 2, 3);
