@@ -18,6 +18,8 @@ inline constexpr std::uint32_t kMostNearest = 64;
 inline constexpr double kMostNearestRadius_m = 1000;
 inline constexpr std::size_t kMostRouteHint = 64;
 inline constexpr float kMostPoseHz = 100;
+// The longest time between two poses, a day, however low a rate is asked for.
+inline constexpr double kLongestPosePeriod_ns = 86'400e9;
 inline constexpr std::size_t kMostNameBytes = 64;
 
 // The request or reply in `bytes`, which it points into; `bytes` must be aligned to 8. kTooLarge,

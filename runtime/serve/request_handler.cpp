@@ -214,8 +214,10 @@ void RequestHandler::subscribe(const Call& call) {
     return refuse(call, wire::Fault::Malformed, "expected pose_hz 0 to 100");
   }
   call.from.wants_events = ask.events();
-  call.from.pose_period_ns =
-      ask.pose_hz() > 0 ? static_cast<std::int64_t>(1e9 / static_cast<double>(ask.pose_hz())) : 0;
+  // A rate may be any float above zero, whose period is not always a number of nanoseconds.
+  const double period_ns =
+      std::min(1e9 / static_cast<double>(ask.pose_hz()), kLongestPosePeriod_ns);
+  call.from.pose_period_ns = ask.pose_hz() > 0 ? static_cast<std::int64_t>(period_ns) : 0;
   call.from.next_pose_ns = call.monotonic_ns;
   MessageBuilder message;
   call.from.answer(message.reply(call.id(), wire::CreateDone(message.builder())));

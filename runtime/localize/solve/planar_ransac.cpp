@@ -176,6 +176,7 @@ std::vector<PlanarPose> find_planar(std::span<const Sighting> sightings, const C
     const Score score =
         score_of(sightings, camera, T_camera_base * lift(*pose, floor_z_m).inverse(), threshold2);
     if (!keep({*pose, score.sum, score.features}, options, best)) continue;
+    if (best.front().features == 0) continue;
     // As often as finds two right ones with 99.9 %, were the sightings as good as this pose says.
     const double share = static_cast<double>(best.front().features) / static_cast<double>(features);
     const double miss = std::log(1 - std::min(0.999, share * share * 0.5));

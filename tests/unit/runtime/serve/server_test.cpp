@@ -225,6 +225,22 @@ TEST_F(Served, HandsOverPosesOnTheRunsClock) {
   EXPECT_FALSE(run.poses.pop(correction));
 }
 
+TEST_F(Served, SendsAPoseAtOnceHoweverLowItsRate) {
+  ASSERT_TRUE(run.open());
+  const Serving serving(run);
+  Client client(run.settings.socket);
+  int poses = 0;
+  client.connection().on_notice([&](const wire::Reply& reply) {
+    if (reply.body_as_PoseReport() != nullptr) ++poses;
+  });
+  const auto subscribed =
+      client.ask([](auto& b) { return wire::CreateSubscribe(b, false, 1e-30F); }).fault();
+  EXPECT_EQ(subscribed, Fault::None);
+  EXPECT_TRUE(soon([&] { return client.connection().listen(10) && poses == 1; }));
+  const auto another = client.connection().listen(100);
+  EXPECT_TRUE(another && !*another) << "the next is due in a day";
+}
+
 TEST_F(Served, PlansThroughZonesThatAreNotLoadedAndHintsWhenAsked) {
   LiveStatus status;
   status.state.zone = 0;
