@@ -96,6 +96,13 @@ if(TARGET zonepack AND TARGET zoned)
   set_tests_properties(system/suggest_zones system/tune PROPERTIES TIMEOUT 600)
 endif()
 
+# Files that are right and do not fit each other: what is said of them.
+if(TARGET zonepack AND TARGET zoned)
+  add_test(NAME system/misfits
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/misfits_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+endif()
+
 # Maps that ask for more memory than the budget: at start, at SIGHUP, and after the refusal.
 if(TARGET zonepack AND TARGET zoned)
   zonepack_test_program(hostile/make_hostile_map.cpp zonepack_packer_test_support)

@@ -31,6 +31,9 @@ int main(int argc, char** argv) {
   zonepack::localize::add_replay(app, replay, command);
   zonepack::localize::LoopArguments check;
   zonepack::localize::add_check(app, check, command);
+  zonepack::add_examples(
+      app, {"zoneloc query --map map --image frame.jpg --calibration camera.yaml --lost",
+            "zoneloc run --calibration camera.yaml --camera v4l2:/dev/video0"});
   try {
     zonepack::parse_command_line(app, argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -116,7 +116,9 @@ exits 0 "$bin/zoned" --quiet --budget 4MiB "${play[@]}"
 mkdir empty
 cd empty
 export ZONED_SOCKET=$work/nobody
-for program in zoned zonectl; do
+programs=(zoned zonectl)
+if [ -x "$bin/zoneloc" ]; then programs+=(zoneloc); fi
+for program in "${programs[@]}"; do
   commands=$("$bin/$program" --help | sed -n '/^Subcommands:/,/^Examples:/s/^  \([a-z]\+\) .*/\1/p')
   [ "$(wc -w <<<"$commands")" -ge 3 ] || fail "$program: no subcommands in its help"
   for command in '' $commands; do

@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""usage: misfits_test.py BIN SOURCE: files that are right and do not fit each other. A log of other frames than the
+settings read, truth and fixes of another day, a database that holds no signatures or changes while it is read, settings
+without a budget: what each program says, and how it ends.
+"""
+import os
+import re
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import threading
+from pathlib import Path
+
+BIN, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+DATA, CONFIG = SOURCE / "tests/data", SOURCE / "config/agilex.yaml"
+DRIVE = DATA / "scenario1_loop"
+LOG, TRUTH, FIXES = DRIVE / "can0.log", DRIVE / "base_groundtruth.txt", DRIVE / "corrections.txt"
+BUILDS = 8
+
+
+def need(holds, what):
+    if not holds:
+        sys.exit(f"misfits_test: {what}")
+
+
+def run(program, *arguments, code=0):
+    command = [str(part) for part in (BIN / program, *arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+    need(code is None or done.returncode == code,
+         f"{' '.join(command)}: exit code {done.returncode}, not {code}: {done.stdout}{done.stderr}")
+    return done.stdout + done.stderr
+
+
+def says(text, words):
+    need(words in text, f"does not say '{words}': {text}")
+
+
+def other_frames():
+    """The drive's log, all of whose frames have an identifier that the settings do not read."""
+    log = Path("other.log")
+    log.write_text(re.sub(r" can0 \w+#", " can0 7FF#", LOG.read_text()))
+    mismatch = ("other.log: holds none of the frames that odometry reads: expected 0x311 (11 bits); the log has 0x7FF "
+                "(11 bits) 11046 times")
+    told = run("zoned", "replay", "--config", CONFIG, "--map", "map", "--can", log, "--report", "other.html")
+    says(told, mismatch)
+    says(told, "NEVER LOCALISED")
+    page = Path("other.html").read_text()
+    says(page, "but the robot was never localised: its own zone was never in memory")
+    says(page, "no truth, so nothing is known of wrong zones")
+    says(run("zoned", "run", "--check", "--config", CONFIG, "--map", "map", "--can", f"log:{log}", "--socket", "socket"),
+         mismatch)
+
+
+def another_day():
+    """Truth and fixes that are 11 days later than the log: nothing of them can be used."""
+    def later(path, stamps):
+        lines = [line.split() for line in path.read_text().splitlines() if not line.startswith("#")]
+        for line in lines:
+            line[:stamps] = [f"{float(stamp) + 1e6:.6f}" for stamp in line[:stamps]]
+        out = Path(f"later_{path.name}")
+        out.write_text("\n".join(" ".join(line) for line in lines) + "\n")
+        return out
+
+    common = ("replay", "--config", CONFIG, "--map", "map", "--can", LOG)
+    for arguments in (("--corrections", later(FIXES, 2)), ("--corrections", FIXES, "--truth", later(TRUTH, 1))):
+        told = run("zoned", *common, *arguments, code=1)
+        says(told, f"{arguments[-1]}: covers 1719021600.000 to ")
+        says(told, "1718021600.001 to 1718021710.441 s: nothing of it could be used")
+
+
+def no_signatures():
+    path = Path("empty.db")
+    path.write_bytes((DATA / "hospital-small.db").read_bytes())
+    with sqlite3.connect(path) as database:
+        for table in ("Node", "Link", "Data", "Feature"):
+            database.execute(f"DELETE FROM {table}")
+    zones = DATA / "zones.geojson"
+    for command in (("build", "--zones", zones, "--out", "none"), ("outline", "--out", "none"),
+                    ("suggest-zones", "--out", "none.geojson"), ("check-zones", zones)):
+        told = run("zonepack", command[0], *command[1:], "--db", path, code=1)
+        says(told, "empty.db: the database holds no signatures")
+    need(not Path("none").exists() and not Path("none.geojson").exists(), "something was written of no signatures")
+
+
+def written_meanwhile():
+    """A build beside one that commits all the time has one state or refuses, and calls nothing damaged."""
+    path = Path("busy.db")
+    path.write_bytes((DATA / "hospital-small.db").read_bytes())
+    ending, commits = threading.Event(), []
+
+    def write():
+        with sqlite3.connect(path, timeout=60) as database:
+            while not ending.is_set():
+                database.execute("UPDATE Node SET time_enter = time_enter + 1")
+                database.commit()
+                commits.append(1)
+
+    writer = threading.Thread(target=write)
+    writer.start()
+    try:
+        for i in range(BUILDS):
+            told = run("zonepack", "build", "--db", path, "--zones", DATA / "zones.geojson", "--out", f"busy{i}",
+                       code=None)
+            need("damaged" not in told, f"a database that another writes is called damaged: {told}")
+            if Path(f"busy{i}").exists():
+                run("zonepack", "verify", f"busy{i}")
+            else:
+                says(told, "busy.db")
+    finally:
+        ending.set()
+        writer.join()
+    need(len(commits) >= BUILDS, f"only {len(commits)} commits beside {BUILDS} builds")
+    done = sum(Path(f"busy{i}").exists() for i in range(BUILDS))
+    print(f"   {len(commits)} commits beside {BUILDS} builds, {done} of them done")
+
+
+def no_budget():
+    need(not re.search(r"^\s*budget:", CONFIG.read_text(), re.M), f"{CONFIG} has a budget")
+    told = run("zoned", "run", "--config", CONFIG, "--map", "map", "--can", f"log:{LOG}@1000", "--socket", "socket")
+    need(re.search(r"memory\.budget is not set: 1\.04 MiB \(1092264 bytes\), the smallest for this map; up to [\d.]+ [MG]iB, "
+                   "a quarter of the memory here, would be taken", told), f"does not say the default budget: {told}")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        run("zonepack", "build", "--db", DATA / "hospital-small.db", "--zones", DATA / "zones.geojson", "--out", "map")
+        for part in (other_frames, another_day, no_signatures, written_meanwhile, no_budget):
+            part()
+            print(f"{part.__name__}: as it should be")
+
+
+main()
