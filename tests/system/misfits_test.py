@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """usage: misfits_test.py BIN SOURCE: files that are right and do not fit each other. A log of other frames than the
-settings read, truth and fixes of another day, a database that holds no signatures or changes while it is read, settings
-without a budget: what each program says, and how it ends.
+settings read, truth and fixes of another day, a clock that is set by decades, a database that holds no signatures or
+changes while it is read, what is no such file at all, settings without a budget: what each program says, and how
+it ends.
 """
+import gzip
 import os
 import re
 import sqlite3
@@ -49,7 +51,7 @@ def other_frames():
     page = Path("other.html").read_text()
     says(page, "but the robot was never localised: its own zone was never in memory")
     says(page, "no truth, so nothing is known of wrong zones")
-    says(run("zoned", "run", "--check", "--config", CONFIG, "--map", "map", "--can", f"log:{log}", "--socket", "socket"),
+    says(run("zoned", "run", "--check", "--config", CONFIG, "--map", "map", "--can", f"log:{log}", "--socket", "here"),
          mismatch)
 
 
@@ -68,6 +70,27 @@ def another_day():
         told = run("zoned", *common, *arguments, code=1)
         says(told, f"{arguments[-1]}: covers 1719021600.000 to ")
         says(told, "1718021600.001 to 1718021710.441 s: nothing of it could be used")
+
+
+def clock_set():
+    """A log whose clock is set by decades half way: said once, and a calibration and a recording go on across it."""
+    lines = LOG.read_text().splitlines()
+    half = len(lines) // 2
+
+    def set_by(line, seconds):
+        stamp, rest = line.split(") ", 1)
+        return f"({float(stamp[1:]) + seconds:.6f}) {rest}"
+
+    for name, seconds, words in (("ahead.log", 1e9, "31.7 years later"), ("back.log", -1e9, "31.7 years earlier")):
+        Path(name).write_text("\n".join(lines[:half] + [set_by(line, seconds) for line in lines[half:]]) + "\n")
+        said = f"{name}:{half + 1}: the clock of the log was set from "
+        told = run("zoned", "calibrate", "--config", CONFIG, "--can", name, "--truth", TRUTH)
+        need(told.count(said) == 1 and words in told, f"does not say once that the clock was set: {told}")
+        need(re.search(r"error at the end +1\.088 ", told), f"calibrates otherwise than without the jump: {told}")
+        told = run("zoned", "run", "--config", CONFIG, "--map", "map", "--can", f"log:{name}@200", "--record",
+                   f"{name}.zpr", "--socket", "socket")
+        need(told.count(said) == 1, f"the run does not say once that the clock was set: {told}")
+        run("zoned", "replay", "--recording", f"{name}.zpr")
 
 
 def no_signatures():
@@ -104,7 +127,7 @@ def written_meanwhile():
             told = run("zonepack", "build", "--db", path, "--zones", DATA / "zones.geojson", "--out", f"busy{i}",
                        code=None)
             need("damaged" not in told, f"a database that another writes is called damaged: {told}")
-            if Path(f"busy{i}").exists():
+            if Path(f"busy{i}/manifest.zpm").exists():
                 run("zonepack", "verify", f"busy{i}")
             else:
                 says(told, "busy.db")
@@ -112,22 +135,41 @@ def written_meanwhile():
         ending.set()
         writer.join()
     need(len(commits) >= BUILDS, f"only {len(commits)} commits beside {BUILDS} builds")
-    done = sum(Path(f"busy{i}").exists() for i in range(BUILDS))
+    done = sum(Path(f"busy{i}/manifest.zpm").exists() for i in range(BUILDS))
     print(f"   {len(commits)} commits beside {BUILDS} builds, {done} of them done")
+
+
+def not_the_file_itself():
+    """A Git LFS pointer and a gzip are called what they are by everything that reads a file, with what to type."""
+    Path("pointer").write_text("version https://git-lfs.github.com/spec/v1\noid sha256:" + "4d" * 32 + "\nsize 12345\n")
+    Path("packed").write_bytes(gzip.compress((DATA / "zones.geojson").read_bytes()))
+    zones, database = DATA / "zones.geojson", DATA / "hospital-small.db"
+    for name, words in (("pointer", "pointer: is a Git LFS pointer, not the file itself; run: git lfs pull"),
+                        ("packed", "packed: is compressed by gzip; run gunzip first: gunzip < 'packed' > NEW")):
+        for command in (("zonepack", "check-zones", name, "--db", database),
+                        ("zonepack", "build", "--db", name, "--zones", zones, "--out", "none"),
+                        ("zonepack", "outline", "--db", name, "--out", "none"),
+                        ("zonepack", "inspect", name),
+                        ("zoned", "replay", "--config", CONFIG, "--map", "map", "--can", name),
+                        ("zoned", "replay", "--config", name, "--map", "map", "--can", LOG),
+                        ("zoned", "replay", "--recording", name)):
+            says(run(*command, code=1), words)
 
 
 def no_budget():
     need(not re.search(r"^\s*budget:", CONFIG.read_text(), re.M), f"{CONFIG} has a budget")
     told = run("zoned", "run", "--config", CONFIG, "--map", "map", "--can", f"log:{LOG}@1000", "--socket", "socket")
-    need(re.search(r"memory\.budget is not set: 1\.04 MiB \(1092264 bytes\), the smallest for this map; up to [\d.]+ [MG]iB, "
-                   "a quarter of the memory here, would be taken", told), f"does not say the default budget: {told}")
+    words = (r"memory\.budget is not set: 1\.04 MiB \(1092264 bytes\), the smallest for this map; up to [\d.]+ [MG]iB, "
+             "a quarter of the memory here, would be taken")
+    need(re.search(words, told), f"does not say the default budget: {told}")
 
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         run("zonepack", "build", "--db", DATA / "hospital-small.db", "--zones", DATA / "zones.geojson", "--out", "map")
-        for part in (other_frames, another_day, no_signatures, written_meanwhile, no_budget):
+        for part in (other_frames, another_day, clock_set, no_signatures, written_meanwhile, not_the_file_itself,
+                     no_budget):
             part()
             print(f"{part.__name__}: as it should be")
 
