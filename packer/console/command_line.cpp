@@ -84,7 +84,8 @@ void JsonOutput::require_writable() const { packer::require_writable(file_); }
 
 void JsonOutput::write(const nlohmann::ordered_json& json) const {
   if (file_.empty()) return;
-  const std::string text = json.dump(2) + "\n";
+  const std::string text =
+      json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   if (file_ == "-") {
     std::cout << text << std::flush;
     if (!std::cout) throw std::runtime_error("cannot write JSON to standard output");

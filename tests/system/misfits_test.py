@@ -6,6 +6,7 @@ changes while it is read, what is no such file at all, settings without a budget
 it ends.
 """
 import gzip
+import json
 import os
 import re
 import sqlite3
@@ -156,6 +157,24 @@ def not_the_file_itself():
             says(run(*command, code=1), words)
 
 
+def not_utf8():
+    """A zone file whose name has a byte that is no text: refused by name, and --json is JSON all the same."""
+    drawn = (DATA / "zones.geojson").read_bytes()
+    Path("bytes.geojson").write_bytes(drawn.replace(b'"name": "', b'"name": "\xff', 1))
+    command = [str(BIN / "zonepack"), "check-zones", "bytes.geojson", "--db", str(DATA / "hospital-small.db"), "--json",
+               "-"]
+    done = subprocess.run(command, capture_output=True, check=False, timeout=120)
+    need(done.returncode == 1, f"check-zones of what is no text: exit code {done.returncode}, not 1")
+    says(json.dumps(json.loads(done.stdout.decode())), "ill-formed UTF-8 byte")
+    says(done.stderr.decode(errors="replace"), "bytes.geojson")
+    odd = os.fsencode("odd") + b"\xff.log"
+    Path(os.fsdecode(odd)).write_bytes(LOG.read_bytes())
+    command = [str(BIN / "zoned"), "replay", "--config", str(CONFIG), "--map", "map", "--can", odd, "--json", "-"]
+    done = subprocess.run(command, capture_output=True, check=False, timeout=120)
+    need(done.returncode == 0, f"replay of a file whose name is no text: exit code {done.returncode}, not 0")
+    json.loads(done.stdout.decode())
+
+
 def no_budget():
     need(not re.search(r"^\s*budget:", CONFIG.read_text(), re.M), f"{CONFIG} has a budget")
     told = run("zoned", "run", "--config", CONFIG, "--map", "map", "--can", f"log:{LOG}@1000", "--socket", "socket")
@@ -169,7 +188,7 @@ def main():
         os.chdir(folder)
         run("zonepack", "build", "--db", DATA / "hospital-small.db", "--zones", DATA / "zones.geojson", "--out", "map")
         for part in (other_frames, another_day, clock_set, no_signatures, written_meanwhile, not_the_file_itself,
-                     no_budget):
+                     not_utf8, no_budget):
             part()
             print(f"{part.__name__}: as it should be")
 
