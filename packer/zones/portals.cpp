@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "packer/zones/edge_rows.hpp"
+#include "packer/zones/near_boxes.hpp"
 #include "packer/zones/plane.hpp"
 #include "packer/zones/shared_border.hpp"
 #include "packer/zones/zone_file.hpp"
@@ -152,19 +152,13 @@ void place_portals(const Drawing& drawing, double snap_m, ZonePlan& plan, Findin
 void find_portals(double snap_m, ZonePlan& plan, Findings& findings) {
   // Only zones whose boxes come near each other can share a border.
   std::vector<Box2> boxes;
-  Stretches columns;
-  for (const PlannedZone& zone : plan.zones) {
-    boxes.push_back(bounds(zone.polygon.outer));
-    columns.add(boxes.back().min.x_m, boxes.back().max.x_m);
-  }
-  columns.sort();
+  for (const PlannedZone& zone : plan.zones) boxes.push_back(bounds(zone.polygon.outer));
+  NearBoxes near(std::move(boxes));
   std::set<std::string> taken;
   std::vector<std::size_t> portals(plan.zones.size());
   std::uint64_t compared = 0;
   for (std::uint32_t a = 0; a < plan.zones.size(); ++a) {
-    for (const std::uint32_t b :
-         columns.touching(boxes[a].min.x_m - snap_m, boxes[a].max.x_m + snap_m, compared)) {
-      if (b <= a || !boxes_meet(boxes[a], boxes[b], snap_m)) continue;
+    for (const std::uint32_t b : near.after(a, snap_m, compared)) {
       const PlannedZone &zone_a = plan.zones[a], &zone_b = plan.zones[b];
       if (!share_a_height(zone_a, zone_b)) continue;
       // Faulty already, so no further portals are of use.

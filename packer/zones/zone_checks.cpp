@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "packer/zones/edge_rows.hpp"
+#include "packer/zones/near_boxes.hpp"
 #include "packer/zones/plane.hpp"
 #include "packer/zones/zone_file.hpp"
 #include "runtime/pack_format/limits.hpp"
@@ -128,21 +128,18 @@ std::uint64_t vertices_of(const Polygon& polygon) {
 
 void check_overlaps(const std::vector<DrawnZone>& zones, Findings& findings) {
   std::vector<Box2> boxes(zones.size());
-  Stretches columns;
   std::uint64_t vertices = 0;
   for (std::size_t i = 0; i < zones.size(); ++i) {
     if (zones[i].sound) boxes[i] = bounds(zones[i].zone.polygon.outer);
-    columns.add(boxes[i].min.x_m, boxes[i].max.x_m);
     vertices += vertices_of(zones[i].zone.polygon);
   }
-  columns.sort();
+  NearBoxes near(std::move(boxes));
   MeasuringSteps steps = steps_for(vertices);
   for (std::uint32_t i = 0; i < zones.size(); ++i) {
     if (!zones[i].sound) continue;
     std::uint64_t compared = 0;
-    for (const std::uint32_t j : columns.touching(boxes[i].min.x_m, boxes[i].max.x_m, compared)) {
-      if (j <= i || !zones[j].sound || !boxes_meet(boxes[i], boxes[j], 0)) continue;
-      if (!share_a_height(zones[i].zone, zones[j].zone)) continue;
+    for (const std::uint32_t j : near.after(i, 0, compared)) {
+      if (!zones[j].sound || !share_a_height(zones[i].zone, zones[j].zone)) continue;
       if (!check_overlap(zones[i], zones[j], steps, findings)) return;
     }
     steps.take(compared);
