@@ -110,7 +110,7 @@ void ControlLoop::step(std::uint64_t cycle, std::int64_t began_ns) noexcept {
   answer();
   status_.can_frames += frames;
   status_.bus = ports_.bus.status();
-  publish(input, offset_ns);
+  publish(input, began_ns, offset_ns);
   measure(input, cycle, {began_ns, received_ns, ran_ns, monotonic_ns()});
 }
 
@@ -165,10 +165,12 @@ void ControlLoop::answer() noexcept {
   }
 }
 
-void ControlLoop::publish(const CycleInput& input, std::int64_t offset_ns) noexcept {
+void ControlLoop::publish(const CycleInput& input, std::int64_t began_ns,
+                          std::int64_t offset_ns) noexcept {
   const Residency& memory = ports_.maps.map().memory;
   ports_.notes.after_cycle(record_of(input.now_ns, ports_.maps.map().cycle.state(), memory));
   status_.now_ns = input.now_ns;
+  status_.began_ns = began_ns;
   status_.clock_offset_ns = offset_ns;
   status_.state = ports_.maps.map().cycle.state();
   status_.budget = memory.limits().budget;

@@ -110,7 +110,7 @@ class ControlLoop {
   std::size_t take_corrections(std::int64_t now_ns) noexcept;
   std::size_t take_edges(std::int64_t now_ns, std::int64_t began_ns) noexcept;
   void answer() noexcept;
-  void publish(const CycleInput& input, std::int64_t offset_ns) noexcept;
+  void publish(const CycleInput& input, std::int64_t began_ns, std::int64_t offset_ns) noexcept;
   void measure(const CycleInput& input, std::uint64_t cycle,
                const std::array<std::int64_t, 4>& marks) noexcept;
 

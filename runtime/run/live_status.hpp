@@ -46,7 +46,13 @@ struct OverloadCounters {
 // The state of the run, as the control thread publishes it after every cycle.
 struct LiveStatus {
   std::int64_t now_ns = 0;           // the cycle's time
-  std::int64_t clock_offset_ns = 0;  // CLOCK_REALTIME minus the run's clock
+  std::int64_t began_ns = 0;         // when it began, CLOCK_MONOTONIC
+  std::int64_t clock_offset_ns = 0;  // CLOCK_REALTIME, or a played log's, minus the run's clock
+
+  // The run's clock at a moment after the cycle.
+  std::int64_t run_ns(std::int64_t monotonic_ns) const noexcept {
+    return now_ns + (monotonic_ns - began_ns);
+  }
   CycleState state;
   ByteCount budget = 0;
   ByteCount charged = 0;

@@ -27,7 +27,7 @@ std::optional<std::int64_t> on_run_clock(wire::Clock clock, std::int64_t stamp_n
     case wire::Clock::Run:
       return stamp_ns;
     case wire::Clock::Monotonic:
-      return minus(now.run_ns(), minus(now.monotonic_ns, stamp_ns));
+      return minus(now.run_ns, minus(now.monotonic_ns, stamp_ns));
     case wire::Clock::Realtime:
       return minus(stamp_ns, now.offset_ns);
   }
@@ -47,7 +47,7 @@ std::optional<PoseCorrection> correction_of(const wire::GivePose& given,
   }
   PoseCorrection correction;
   correction.stamp_ns = *stamp_ns;
-  correction.received_ns = now.run_ns();
+  correction.received_ns = now.run_ns;
   correction.T_map_base = {pose.x(), pose.y(), wrap_angle(pose.yaw())};
   correction.sigma_x_m = std::sqrt(covariance.xx());
   correction.sigma_y_m = std::sqrt(covariance.yy());

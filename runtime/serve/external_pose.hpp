@@ -12,10 +12,9 @@ namespace zonepack {
 // The clocks at one instant.
 struct ClockReading {
   std::int64_t monotonic_ns = 0;
-  std::int64_t realtime_ns = 0;
-  std::int64_t offset_ns = 0;  // realtime minus the run's clock
-
-  std::int64_t run_ns() const noexcept { return realtime_ns - offset_ns; }
+  std::int64_t run_ns = 0;
+  std::int64_t offset_ns =
+      0;  // realtime, or the time of a log that is played, minus the run's clock
 };
 
 // A pose that another program gave, on the run's clock; nothing when it is not a valid pose: a

@@ -301,7 +301,9 @@ void RequestHandler::hint(const Call& call) {
 }
 
 void RequestHandler::take_pose(const Call& call) {
-  const ClockReading now{call.monotonic_ns, realtime_ns(), ports_.status.load().clock_offset_ns};
+  const LiveStatus status = ports_.status.load();
+  const ClockReading now{call.monotonic_ns, status.run_ns(call.monotonic_ns),
+                         status.clock_offset_ns};
   const auto correction = correction_of(*call.request.body_as_GivePose(), now);
   if (!correction) return refuse(call, wire::Fault::Malformed, "not a pose with a covariance");
   if (!ports_.poses.push(*correction)) return refuse(call, wire::Fault::Busy);

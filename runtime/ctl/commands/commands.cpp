@@ -198,7 +198,7 @@ Outcome<void> ctl_pose(const std::string& socket, const PoseArguments& given) {
   const wire::Covariance covariance(given.sigma_m * given.sigma_m, 0, 0,
                                     given.sigma_m * given.sigma_m, 0, sigma_yaw * sigma_yaw);
   return order(socket, [&](auto& b) {
-    return wire::CreateGivePose(b, wire::Clock::Realtime, realtime_ns(), &pose, &covariance);
+    return wire::CreateGivePose(b, wire::Clock::Monotonic, monotonic_ns(), &pose, &covariance);
   });
 }
 

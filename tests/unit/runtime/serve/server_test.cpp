@@ -198,17 +198,20 @@ TEST_F(Served, ReleasesTheLeasesOfAClientThatIsGone) {
 
 TEST_F(Served, HandsOverPosesOnTheRunsClock) {
   LiveStatus status;
+  status.now_ns = 1'000'000'000'000'000;  // a log of another day
+  status.began_ns = monotonic_ns();
   status.clock_offset_ns = 1'000;
   run.status.store(status);
   ASSERT_TRUE(run.open());
   const Serving serving(run);
   Client client(run.settings.socket);
-  const auto give = [&](double x, double variance) {
+  const auto give = [&](double x, double variance, wire::Clock clock = wire::Clock::Realtime,
+                        std::int64_t stamp_ns = 5'000) {
     return client
         .ask([&](auto& b) {
           const wire::Pose pose(x, 2, 7);
           const wire::Covariance covariance(variance, 0, 0, 0.25, 0, 0.01);
-          return wire::CreateGivePose(b, wire::Clock::Realtime, 5'000, &pose, &covariance);
+          return wire::CreateGivePose(b, clock, stamp_ns, &pose, &covariance);
         })
         .fault();
   };
@@ -223,6 +226,11 @@ TEST_F(Served, HandsOverPosesOnTheRunsClock) {
   EXPECT_EQ(give(std::numeric_limits<double>::quiet_NaN(), 0.04), Fault::Malformed);
   EXPECT_EQ(give(1, 0), Fault::Malformed);
   EXPECT_FALSE(run.poses.pop(correction));
+  // Seen 5 us after the cycle began, whatever day the run's clock has.
+  EXPECT_EQ(give(1, 0.04, wire::Clock::Monotonic, status.began_ns + 5'000), Fault::None);
+  ASSERT_TRUE(run.poses.pop(correction));
+  EXPECT_EQ(correction.stamp_ns, status.now_ns + 5'000);
+  EXPECT_GE(correction.received_ns, correction.stamp_ns);
 }
 
 TEST_F(Served, SendsAPoseAtOnceHoweverLowItsRate) {
