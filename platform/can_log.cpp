@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "platform/base/file_kind.hpp"
+#include "platform/base/shell_word.hpp"
 
 namespace zonepack {
 namespace {

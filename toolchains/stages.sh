@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Sourced by toolchains/run: the stages of `test --all`. `toolchains/run stage NAME` runs one alone; each builds what it
 # needs, and exits with 77 where this machine cannot run it.
-stages=(tests lint asan tsan prove deb arm64 armhf decisions robot)
+stages=(tests lint asan tsan prove deb arm64 robot decisions armhf)
 
 stage_tests() {
   do_install packages-test.txt || stage "not run: the reports' pages in Chromium, which cannot be installed here"

@@ -19,8 +19,8 @@
 #include "packer/build/zone_jobs.hpp"
 #include "packer/encode/packable.hpp"
 #include "packer/sources/open_source.hpp"
-#include "platform/base/file_kind.hpp"
 #include "platform/base/require.hpp"
+#include "platform/base/shell_word.hpp"
 
 namespace zonepack::packer {
 namespace {

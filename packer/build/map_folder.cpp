@@ -15,7 +15,7 @@ namespace zonepack::packer {
 
 MapFolder::MapFolder(std::filesystem::path path) : path_(std::move(path)) {
   std::error_code error;
-  std::filesystem::create_directories(path_, error);
+  created_ = std::filesystem::create_directories(path_, error);
   if (error || !std::filesystem::is_directory(path_)) {
     throw std::runtime_error(path_.string() + ": cannot create the map's folder: " +
                              (error ? error.message() : "a file of that name exists") +
@@ -27,7 +27,11 @@ MapFolder::MapFolder(std::filesystem::path path) : path_(std::move(path)) {
   }
 }
 
-MapFolder::~MapFolder() { remove_new({}); }
+MapFolder::~MapFolder() {
+  remove_new({});
+  std::error_code holds_a_map;
+  if (created_) std::filesystem::remove(path_, holds_a_map);
+}
 
 void MapFolder::keep(const std::string& file) {
   const std::lock_guard lock(mutex_);

@@ -11,7 +11,7 @@ namespace zonepack::packer {
 
 // The folder of a map while a new version of it is written. Packs get names of their own; the
 // manifest's rename makes them the map. Without commit() (after an error), the destructor removes
-// packs that were not there before.
+// packs that were not there before, and the folder if it was made for them.
 //
 // Threads: keep() by any; the rest by one.
 class MapFolder {
@@ -34,6 +34,7 @@ class MapFolder {
   void remove_new(const std::set<std::string>& but) noexcept;
 
   std::filesystem::path path_;
+  bool created_ = false;
   std::set<std::string> before_;
   std::set<std::string> written_;
   std::mutex mutex_;

@@ -19,6 +19,7 @@
 #include "packer/console/command_line.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/words.hpp"
+#include "platform/base/shell_word.hpp"
 #include "platform/command_line/command_line.hpp"
 
 namespace zonepack::packer {

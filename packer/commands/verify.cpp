@@ -11,6 +11,7 @@
 #include "packer/console/words.hpp"
 #include "packer/decode/map_reader.hpp"
 #include "packer/verify/map_verifier.hpp"
+#include "platform/base/shell_word.hpp"
 #include "platform/command_line/command_line.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "platform/base/file_kind.hpp"
+#include "platform/base/shell_word.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -40,7 +40,7 @@ void require_writable(const std::string& file) {
   const fs::file_status status = fs::status(folder, ignored);
   if (!fs::exists(status)) {
     refuse_output(file, "there is no folder " + folder.string() + "; create it first: mkdir -p " +
-                            shell_quoted(folder.string()));
+                            shell_word(folder.string()));
   }
   if (!fs::is_directory(status)) {
     refuse_output(file, folder.string() + " is no folder; give another path");

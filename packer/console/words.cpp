@@ -24,13 +24,6 @@ std::string size_text(ByteCount bytes) {
   return bytes < kMiB / 100 ? text : text + " (" + mib_text(bytes) + " MiB)";
 }
 
-std::string shell_word(const std::string& path) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789/._-+=:,@%";
-  const bool plain = !path.empty() && path.find_first_not_of(kPlain) == path.npos;
-  return plain ? path : shell_quoted(path);
-}
-
 std::vector<std::size_t> natural_order(const std::vector<std::string>& names) {
   std::vector<std::size_t> order(names.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -17,9 +17,6 @@ std::string mib_text(ByteCount bytes);
 // "180224 bytes (0.17 MiB)"; below 0.01 MiB the bytes alone.
 std::string size_text(ByteCount bytes);
 
-// A path for a command to type: quoted only where a shell needs it.
-std::string shell_word(const std::string& path);
-
 // The indices of names in the order of natural_less().
 std::vector<std::size_t> natural_order(const std::vector<std::string>& names);
 

@@ -11,6 +11,7 @@
 #include "platform/base/file_kind.hpp"
 #include "platform/base/natural_order.hpp"
 #include "platform/base/nearest_word.hpp"
+#include "platform/base/shell_word.hpp"
 
 namespace zonepack::packer {
 

@@ -11,6 +11,7 @@
 #include "packer/decode/map_reader.hpp"
 #include "packer/verify/problem.hpp"
 #include "platform/base/failure.hpp"
+#include "platform/base/shell_word.hpp"
 #include "runtime/pack_format/file/pack_reader.hpp"
 
 namespace zonepack::packer {

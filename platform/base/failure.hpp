@@ -52,7 +52,8 @@ inline Failure usage_failure(std::string message) {
   return {ErrorCode::kUsage, std::move(message)};
 }
 
-// "FILE: cannot be written: permission denied", with errno's text where there is one.
+// "FILE: cannot be written: permission denied", with errno's text where there is one, and how to
+// make a folder that is missing.
 Failure cannot_write(const std::string& file, const Error& error);
 
 // The error's word ("bad checksum"), or errno's text for kIo.

@@ -9,6 +9,8 @@
 #include <span>
 #include <system_error>
 
+#include "platform/base/shell_word.hpp"
+
 namespace zonepack {
 
 namespace {
@@ -93,18 +95,6 @@ std::string misplaced_at(const std::string& path, std::string_view magic) {
 
 std::string stand_in_at(const std::string& path) {
   return stand_in(first_bytes_of(path).value_or(""), path);
-}
-
-std::string shell_quoted(std::string_view path) {
-  std::string text = "'";
-  for (const char c : path) {
-    if (c == '\'') {
-      text += "'\\''";
-    } else {
-      text += c;
-    }
-  }
-  return text + "'";
 }
 
 }  // namespace zonepack

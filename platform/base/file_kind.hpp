@@ -25,7 +25,4 @@ std::string known_kind(std::string_view first_bytes, std::string_view path = {})
 // kind, an unknown kind and a missing file.
 std::string misplaced_at(const std::string& path, std::string_view magic);
 
-// A path as one word of a shell.
-std::string shell_quoted(std::string_view path);
-
 }  // namespace zonepack

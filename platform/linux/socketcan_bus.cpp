@@ -5,6 +5,8 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <string>
 
 #include "platform/can_errors.hpp"
 #include "platform/clock.hpp"
@@ -129,6 +131,21 @@ std::size_t Bus::receive(std::span<CanFrame> into) noexcept {
   return count;
 }
 
+// A virtual bus has no bit rate.
+std::string how_to_bring_up(const std::string& interface) {
+  const bool hardware = std::filesystem::exists("/sys/class/net/" + interface + "/device");
+  return "; bring it up: ip link set " + interface + " up" +
+         (hardware ? " type can bitrate 500000 (the bit rate of the robot's bus)" : "");
+}
+
+std::string how_to_make(const std::string& interface) {
+  if (interface.starts_with("vcan")) {
+    return "; make it: ip link add " + interface + " type vcan && ip link set " + interface + " up";
+  }
+  return "; plug in its adapter or load its driver; then ip link set " + interface +
+         " up type can bitrate 500000 (the bit rate of the robot's bus)";
+}
+
 }  // namespace
 
 Result<std::unique_ptr<SocketCanBus>> SocketCanBus::open(const SocketCanSettings& settings) {
@@ -138,16 +155,14 @@ Result<std::unique_ptr<SocketCanBus>> SocketCanBus::open(const SocketCanSettings
 }
 
 std::string explain_socketcan(const std::string& interface, const Error& error) {
-  const std::string up = "; bring it up: ip link set " + interface +
-                         " up type can bitrate 500000 (the bit rate of the robot's bus)";
   if (error.code == ErrorCode::kNotFound) {
-    return interface + ": no such network interface; plug in its adapter or load its driver" + up;
+    return interface + ": no such network interface" + how_to_make(interface);
   }
   if (error.code == ErrorCode::kBadValue) {
     return interface +
            ": not a CAN interface; ip -details link show type can lists those there are";
   }
-  if (error.detail == ENETDOWN) return interface + ": is down" + up;
+  if (error.detail == ENETDOWN) return interface + ": is down" + how_to_bring_up(interface);
   if (error.detail == EAFNOSUPPORT || error.detail == EPROTONOSUPPORT) {
     return interface +
            ": this kernel has no CAN; load it: modprobe can-raw, or take a kernel with "

@@ -25,6 +25,19 @@ std::string remedy_of(std::string_view reason) {
   return "; the robot goes on with it";
 }
 
+// What the word for a refused fix leaves open.
+std::string meaning_of(std::string_view reason) {
+  if (reason == to_string(CorrectionVerdict::kInvalid)) {
+    return ": a position, angle or sigma that cannot be: not finite, beyond any map, an angle in "
+           "degrees, or a sigma that is not over 0";
+  }
+  if (reason == to_string(CorrectionVerdict::kFromFuture)) {
+    return ": stamped after it came; look at the clock of whatever gives it";
+  }
+  if (reason == to_string(CorrectionVerdict::kTooOld)) return ": from before pose.history";
+  return {};
+}
+
 std::string seconds_text(std::int64_t ns) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2f s", static_cast<double>(ns) / 1e9);
@@ -87,7 +100,7 @@ EventMessages::Message EventMessages::message_of(const Event& event, const MapVe
           "where the fixes come from",
           true};
     case EventKind::kCorrectionRejected:
-      return {"fix refused: " + reason};
+      return {"fix refused: " + reason + meaning_of(reason)};
     case EventKind::kMarkerIgnored:
       return {"marker" + (zone.empty() ? "" : " of zone " + zone) + " refused: " + reason};
     case EventKind::kZoneEntered:

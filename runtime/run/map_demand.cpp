@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "platform/base/shell_word.hpp"
 #include "runtime/pack_format/file/accounting.hpp"
 
 namespace zonepack {
@@ -70,7 +71,7 @@ ResidencyLimits limits_for(const Catalog& catalog, std::optional<ByteCount> budg
 std::string smallest_budget_text(const Catalog& catalog, const std::vector<ZoneId>& pinned) {
   return "the smallest budget for this map" + std::string(pinned.empty() ? "" : " and its pins") +
          " is " + format_byte_count(catalog.smallest(pinned).bytes) +
-         " (zonepack plan shows what sets it)";
+         "; what sets it: zonepack plan " + shell_word(catalog.folder);
 }
 
 Outcome<void> check_limits(const Catalog& catalog, const ResidencyLimits& limits,

@@ -18,15 +18,9 @@ Outcome<void> check_outputs(std::initializer_list<OutputChoice> outputs) {
     }
     const auto possible = check_output_place(output.path, output.overwriting);
     if (possible) continue;
-    const std::string name = std::string(output.option) + ": " + output.path;
-    if (possible.error().code == ErrorCode::kNotFound) {
-      const std::string folder = folder_of_path(output.path);
-      failed.add(failure(
-          name + ": cannot be written: there is no folder " + folder + "; mkdir -p " + folder,
-          ErrorCode::kNotFound));
-    } else {
-      failed.add(cannot_write(name, possible.error()));
-    }
+    Failure why = cannot_write(output.path, possible.error());
+    why.message = std::string(output.option) + ": " + why.message;
+    failed.add(why);
   }
   return failed.all();
 }

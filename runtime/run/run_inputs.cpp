@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "platform/base/shell_word.hpp"
 #include "platform/board.hpp"
 #include "platform/storage.hpp"
 #include "runtime/odometry/det_math.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 Failure map_failure(const std::string& folder, const Error& error, const std::string& why,
                     std::optional<ByteCount> budget) {
+  const std::string verify = "zonepack verify " + shell_word(folder);
   if (error.code == ErrorCode::kTooLarge && error.detail > 0) {
     const std::string limit = budget ? "budget of " + format_byte_count(*budget)
                                      : "default limit of " +
@@ -24,17 +26,25 @@ Failure map_failure(const std::string& folder, const Error& error, const std::st
                             ": reading it and holding its tables takes " +
                             format_byte_count(static_cast<ByteCount>(error.detail)) +
                             ", over the " + limit +
-                            "; zonepack verify reports whether it is as zonepack build writes it"};
+                            "; whether it is as zonepack build writes it is said by: " + verify};
   }
   if (!why.empty()) {
-    return {error.code, folder + "/" + std::string(kManifestName) + ": " + why +
-                            "; build the map again with zonepack build, or copy it again; zonepack "
-                            "verify checks it"};
+    return {error.code,
+            folder + "/" + std::string(kManifestName) + ": " + why +
+                "; build the map again with zonepack build, or copy it again; what is wrong "
+                "with it: " +
+                verify};
   }
-  return {error.code, folder + ": cannot be opened as a map: " + to_string(error.code) + " (" +
-                          std::to_string(error.detail) +
-                          "); it must hold manifest.zpm as written by zonepack build, and zonepack "
-                          "verify says more"};
+  if (error.code == ErrorCode::kNotFound) {
+    return {error.code, folder + "/" + std::string(kManifestName) +
+                            ": no such file; expected the folder of a map, which zonepack build "
+                            "writes: zonepack build --help"};
+  }
+  return {
+      error.code,
+      folder + ": cannot be opened as a map: " + to_string(error.code) + " (" +
+          std::to_string(error.detail) +
+          "); it must hold manifest.zpm as written by zonepack build; what it lacks: " + verify};
 }
 
 }  // namespace

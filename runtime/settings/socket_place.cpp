@@ -14,11 +14,13 @@ constexpr const char* kUsual = "auto";
 
 }  // namespace
 
-std::string usual_socket() {
+std::string usual_socket(bool superuser) {
   const char* const folder = std::getenv("XDG_RUNTIME_DIR");
-  if (is_superuser() || folder == nullptr || *folder == '\0') return kSystemSocket;
+  if (superuser || folder == nullptr || *folder == '\0') return kSystemSocket;
   return std::string(folder) + "/zonepack/zoned.sock";
 }
+
+std::string usual_socket() { return usual_socket(is_superuser()); }
 
 std::string listening_socket(const std::optional<std::string>& chosen,
                              const ServeSettings& settings) {

@@ -14,7 +14,8 @@ inline constexpr const char* kSystemSocket = "/run/zoned/zoned.sock";
 
 // $XDG_RUNTIME_DIR/zonepack/zoned.sock for a user other than root who has that variable, else
 // kSystemSocket. The folder need not exist.
-std::string usual_socket();
+std::string usual_socket(bool superuser);
+std::string usual_socket();  // of the user who runs this
 
 // Where a zoned with these settings listens. chosen: of --socket.
 std::string listening_socket(const std::optional<std::string>& chosen,

@@ -5,7 +5,17 @@ set -euo pipefail
 build=$1 source=$2 data=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+export CMAKE_EXPORT_COMPILE_COMMANDS=ON
 cmake --install "$build" --prefix "$work/prefix" >"$work/install.log"
+[ "$(ls "$work/prefix/include")" = zonepack ] || { echo "headers of general names are installed: $(ls "$work/prefix/include")"; exit 1; }
+
+# What a consumer's compiler is given of this prefix is its include folder, and nothing below it.
+own_include_path() {  # BUILD
+  local given
+  given=$(grep -oE -- "(-I|-isystem )$work/prefix[^ ]*" "$1/compile_commands.json" | sed 's/^[^/]*//' | sort -u)
+  [ "$given" = "$work/prefix/include" ] || { echo "$1: on the include path: $given"; exit 1; }
+}
+
 "$work/prefix/bin/zonepack" build --db "$data/hospital-small.db" --zones "$data/zones.geojson" \
   --payload features --out "$work/map" >/dev/null
 for components in "" packer; do
@@ -13,6 +23,7 @@ for components in "" packer; do
     -DCMAKE_PREFIX_PATH="$work/prefix" -DEXTRA_COMPONENTS="$components" >"$work/configure.log" ||
     { cat "$work/configure.log"; exit 1; }
   cmake --build "$work/consumer$components" >"$work/build.log" 2>&1 || { cat "$work/build.log"; exit 1; }
+  own_include_path "$work/consumer$components"
   got=$("$work/consumer$components/consumer" "$work/map")
   [ "$got" = "C1 9" ] || { echo "expected 'C1 9' from the consumer, got '$got'"; exit 1; }
 done
@@ -24,6 +35,7 @@ cmake -S "$source/tests/system/consumer/client" -B "$work/client" -DCMAKE_BUILD_
   -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON >"$work/configure.log" 2>&1 ||
   { cat "$work/configure.log"; exit 1; }
 cmake --build "$work/client" >"$work/build.log" 2>&1 || { cat "$work/build.log"; exit 1; }
+own_include_path "$work/client"
 if ldd "$work/client/read_map" | grep -E 'yaml|sodium|lz4|xxhash|sqlite'; then
   echo "a client links what it does not need"
   exit 1
@@ -36,6 +48,7 @@ nobody="status 4"  # ZP_NO_SERVER
 cmake -S "$source/tests/system/consumer/c_only" -B "$work/c_only" -DCMAKE_PREFIX_PATH="$work/prefix" \
   >"$work/configure.log" 2>&1 || { cat "$work/configure.log"; exit 1; }
 cmake --build "$work/c_only" >"$work/build.log" 2>&1 || { cat "$work/build.log"; exit 1; }
+own_include_path "$work/c_only"
 got=$("$work/c_only/c_only" "$work/no.sock")
 [ "$got" = "$nobody" ] || { echo "the program in C says: $got"; exit 1; }
 PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name zonepack.pc)")

@@ -32,6 +32,8 @@ holds "$work/one/run.html" '82 signatures loaded, 0 unloaded.'
 holds "$work/one/run.html" '>981, 1071<'
 holds "$work/one/run.svg" '>Zonepack loaded</text>'
 holds "$work/one/map.html" 'main lobby with nurses station and waiting areas'
+"$bin/zonepack" outline --db "$data/hospital-small.db" --out "$work/outline" >/dev/null
+"$source/tests/system/report/grid_in_page.py" "$work/one/map.html" "$work/outline/map.pgm"
 [ "$(head -c 4 "$work/map.png" | tail -c 3)" = PNG ] || fail "map.png is no PNG"
 
 # A page stands alone, and no part of a file is left behind.

@@ -40,6 +40,9 @@ if(TARGET zonepack AND TARGET zoned)
   set_tests_properties(system/report_pages PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600)
 endif()
 if(TARGET zonepack AND TARGET zoned AND TARGET zonectl AND TARGET zoneloc)
+  add_test(NAME system/runtime_hints
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/runtime_hints_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
   add_test(NAME system/documents
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/documents_test.py ${PROJECT_SOURCE_DIR}
                    ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})

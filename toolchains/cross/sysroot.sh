@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 . toolchains/cross/debian.sh
 use_arch "$1"
 
-mapfile -t packages < <(printf '%s\n' libc6-dev libstdc++-12-dev linux-libc-dev; grep -e '-dev$' toolchains/packages.txt)
+mapfile -t packages < <(printf '%s\n' libc6-dev libstdc++-12-dev linux-libc-dev; grep -e '-dev$' toolchains/packages.txt | grep -v clang)
 made_of() { printf '%s\n' "${packages[@]}"; cat toolchains/cross/{debian,sysroot}.sh; }
 if diff -q <(made_of) "$sysroot/.made_of" >/dev/null 2>&1; then
   echo "sysroot: $sysroot is there"

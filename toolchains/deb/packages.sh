@@ -92,7 +92,7 @@ fi
 [ "${4:-}" != robot ] || exit 0
 
 # Who builds against the library needs what it was built against, without test libraries and compilers.
-headers=$(grep -e '-dev$' toolchains/packages.txt | grep -vE 'gtest|gmock|benchmark' | paste -sd, | sed 's/,/, /g')
+headers=$(grep -e '-dev$' toolchains/packages.txt | grep -vE 'clang|gtest|gmock|benchmark' | paste -sd, | sed 's/,/, /g')
 package tools misc "" "zone-wise 3D map memory for mobile robots: packing of maps" <<'BODY'
 zonepack cuts a SLAM map into zones, such as rooms and corridors, and writes
 one compressed pack per zone, for zoned to load on the robot.

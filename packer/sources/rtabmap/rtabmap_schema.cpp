@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "platform/base/file_kind.hpp"
+#include "platform/base/shell_word.hpp"
 
 namespace zonepack::packer {
 namespace {

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "platform/base/file_kind.hpp"
+#include "platform/base/shell_word.hpp"
 
 namespace zonepack::packer {
 namespace {

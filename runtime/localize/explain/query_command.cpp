@@ -11,6 +11,7 @@
 
 #include "platform/base/failure.hpp"
 #include "platform/base/json_text.hpp"
+#include "platform/base/shell_word.hpp"
 #include "platform/write_output.hpp"
 #include "runtime/localize/camera/calibration.hpp"
 #include "runtime/localize/camera/image_file.hpp"
@@ -141,7 +142,7 @@ Outcome<std::vector<MapFeatures>> features_of(const MapFolder& map, const std::s
   std::vector<MapFeatures> out;
   if (!zone.empty() && map.catalog.find(zone) == kNoZone) {
     return failure(map.catalog.folder + ": has no zone '" + zone + "'; zonepack inspect " +
-                   map.catalog.folder + " lists them");
+                   shell_word(map.catalog.folder) + " lists them");
   }
   for (ZoneId id = 0; id < map.catalog.zones.size(); ++id) {
     if (!zone.empty() && map.catalog.zones[id].name != zone) continue;

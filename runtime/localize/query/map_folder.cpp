@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "platform/base/shell_word.hpp"
 #include "runtime/client/signature_view.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 
@@ -28,7 +29,7 @@ Outcome<DecodedPack> decode_zone(const Catalog& catalog, const CatalogZone& zone
   const std::string file = catalog.folder + "/" + zone.pack;
   const auto bad = [&](const Error& error) {
     return failure(file + ": zone '" + zone.name + "' cannot be read: " + reason_text(error) +
-                       "; zonepack verify " + catalog.folder + " says more",
+                       "; zonepack verify " + shell_word(catalog.folder) + " says more",
                    error.code);
   };
   const auto pack = PackReader::open(file, &zone.pack_digest);

@@ -65,7 +65,7 @@ std::optional<Spread> spread_of(std::vector<double> values) {
   const auto at = [&](double share) {
     return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
   };
-  return Spread{at(0.5), at(0.95), values.back()};
+  return Spread{at(0.5), at(0.95), values.back(), at(0.99)};
 }
 
 void HeadingWatch::after_cycle(const CycleRecord& cycle, const MapVersion&) noexcept {

@@ -19,9 +19,10 @@
 
 namespace zonepack::localize {
 
-// The values that half of all, and 95 % of all, are not above (nearest rank), and the largest.
+// The values that half of all, 95 % and 99 % of all, are not above (nearest rank), and the largest.
 struct Spread {
   double p50 = 0, p95 = 0, max = 0;
+  std::optional<double> p99;  // where it is known
 };
 std::optional<Spread> spread_of(std::vector<double> values);
 

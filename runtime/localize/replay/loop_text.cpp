@@ -15,6 +15,7 @@ namespace {
 // The members of an object without its braces.
 std::string members(const Spread& spread) {
   return "\"p50\": " + shortest_number(spread.p50) + ", \"p95\": " + shortest_number(spread.p95) +
+         (spread.p99 ? ", \"p99\": " + shortest_number(*spread.p99) : "") +
          ", \"max\": " + shortest_number(spread.max);
 }
 
@@ -34,7 +35,7 @@ std::string json_of(const std::optional<T>& value) {
 
 std::optional<Spread> spread(const std::optional<PoseError>& error) {
   if (!error) return std::nullopt;
-  return Spread{error->p50, error->p95, error->max};
+  return Spread{error->p50, error->p95, error->max, std::nullopt};
 }
 
 std::string queries_json(const LoopFigures& figures) {

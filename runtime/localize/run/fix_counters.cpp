@@ -29,6 +29,7 @@ std::string in_ms(std::int64_t ns) { return decimal(static_cast<double>(ns) / 1e
 std::string percentiles_json(const Histogram& histogram) {
   return "\"p50\":" + in_ms(histogram.percentile(0.5)) +
          ",\"p95\":" + in_ms(histogram.percentile(0.95)) +
+         ",\"p99\":" + in_ms(histogram.figures().p99) +
          ",\"max\":" + in_ms(histogram.figures().max);
 }
 

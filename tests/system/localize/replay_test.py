@@ -124,7 +124,9 @@ def check_keys():
         need(is_number(result[key]), f"{key} is no number of seconds: {result}")
     for key in SPREADS:
         need(all(is_number(result[key][part]) for part in ("p50", "p95", "max")), f"{key} is no spread: {result}")
-        need(result[key]["p50"] <= result[key]["p95"] <= result[key]["max"], f"{key} is not in order: {result}")
+        need(result[key]["p50"] <= result[key]["p95"] <= result[key].get("p99", math.inf), f"{key} is not in order: {result}")
+        need(result[key].get("p99", result[key]["p95"]) <= result[key]["max"], f"{key} is not in order: {result}")
+    need(is_number(result["query_ms"]["p99"]), f"query_ms has no p99: {result}")
     stages = result["query_ms"]["stages"]
     need(stages and all(is_number(stage["p50"]) for stage in stages.values() if stage), f"no stages: {result}")
     need(sum(result["reasons"].values()) == result["images"] == IMAGES, f"expected {IMAGES} reasons: {result}")

@@ -99,6 +99,7 @@ while read -r thread words; do
 done <<'THREADS'
 zoned-loader the thread that loads zones
 zoned-log the thread that writes --events
+zoned-state the thread that writes --events, --record and --record-can, or the state
 zoned-feed the source of frames
 zoned-service the thread that serves clients
 zoned-control the control thread

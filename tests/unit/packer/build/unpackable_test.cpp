@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <ostream>
 #include <sstream>
@@ -58,6 +59,7 @@ TEST_P(Unpackable, IsNamedAndLeftOutOnRequest) {
     FAIL() << "packed what fits in no pack";
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("--damaged skip"));
+    EXPECT_FALSE(std::filesystem::exists(options.out));  // nothing is left of it
     EXPECT_THAT(error.what(), HasSubstr(GetParam().column + ": "));
   }
   options.damaged = DamagedPolicy::kSkip;

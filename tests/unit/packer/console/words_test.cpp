@@ -20,13 +20,6 @@ TEST(Words, GiveSizesInMiB) {
   EXPECT_EQ(size_text(kMiB), "1048576 bytes (1.00 MiB)");
 }
 
-TEST(Words, QuotePathsOnlyWhereAShellNeedsIt) {
-  EXPECT_EQ(shell_word("maps/ward-2.zpk"), "maps/ward-2.zpk");
-  EXPECT_EQ(shell_word("my map"), "'my map'");
-  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
-  EXPECT_EQ(shell_word(""), "''");
-}
-
 TEST(Words, OrderNamesAsAReaderDoes) {
   EXPECT_EQ(natural_order({"room10", "room2", "hall"}), (std::vector<std::size_t>{2, 1, 0}));
 }

@@ -93,6 +93,22 @@ TEST_F(EventMessagesTest, SaysWhyAZoneOrAFixIsRefused) {
   EXPECT_THAT(said.front(), HasSubstr("raise memory.budget"));
 }
 
+TEST_F(EventMessagesTest, SaysWhatCannotBeInAFixThatIsRefused) {
+  EventMessages console = messages(false);
+  for (const CorrectionVerdict verdict :
+       {CorrectionVerdict::kInvalid, CorrectionVerdict::kFromFuture, CorrectionVerdict::kTooOld}) {
+    Event fix = event(EventKind::kCorrectionRejected);
+    fix.reason = to_string(verdict);
+    console.on_event(fix, *map);
+  }
+  EXPECT_THAT(
+      said,
+      ElementsAre(AllOf(HasSubstr("fix refused: invalid: "), HasSubstr("angle in degrees"),
+                        HasSubstr("sigma that is not over 0")),
+                  HasSubstr("fix refused: from_future: stamped after it came; look at the clock"),
+                  HasSubstr("fix refused: too_old: from before pose.history")));
+}
+
 TEST_F(EventMessagesTest, SaysWhenTheMapIsReadyAndWhyNot) {
   EventMessages console = messages(false);
   console.after_cycle(cycle(false, 10'000'000'000), *map);

@@ -150,7 +150,8 @@ TEST_F(ReportFileTest, AnotherNameIsRefusedWithWhatIsAllowed) {
 TEST_F(ReportFileTest, AMissingFolderIsNamed) {
   const Outcome<void> written = write_report(path("no/r.html"), sample());
   ASSERT_FALSE(written);
-  EXPECT_NE(written.error().message.find("No such file or directory"), std::string::npos);
+  EXPECT_NE(written.error().message.find("there is no folder " + path("no") + "; mkdir -p "),
+            std::string::npos);
 }
 
 TEST_F(ReportFileTest, WithoutRsvgConvertItSaysWhatToInstallAndLeavesNothing) {

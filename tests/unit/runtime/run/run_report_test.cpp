@@ -157,9 +157,12 @@ TEST(RunReport, WithoutTruthThereIsNoErrorFigure) {
   for (TraceSample& s : trace.samples) s.has_truth = false;
   RunSummary s = summary();
   s.pose_error_m.reset();
+  s.wrong_zone_s.reset();
   const report::Report page = make_run_report({"map", "can0.log", s, trace, kNoBaseline});
   EXPECT_EQ(page.figures.size(), 4u);
   EXPECT_EQ(to_html(page).find("pose error"), std::string::npos);
+  EXPECT_EQ(to_html(page).find(" s in a wrong zone"), std::string::npos);
+  EXPECT_NE(to_html(page).find("no truth, so nothing is known of wrong zones"), std::string::npos);
 }
 
 TEST(RunReport, OfARunWithoutSamplesIsStillAPage) {

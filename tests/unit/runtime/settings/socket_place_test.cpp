@@ -25,9 +25,13 @@ class SocketPlace : public testing::Test {
 
 TEST_F(SocketPlace, IsTheSystemsForRootAndTheUsersOwnForOthers) {
   const std::string own = folder / "zonepack/zoned.sock";
-  EXPECT_EQ(usual_socket(), is_superuser() ? kSystemSocket : own);
+  EXPECT_EQ(usual_socket(true), kSystemSocket);
+  EXPECT_EQ(usual_socket(false), own);
+  EXPECT_EQ(usual_socket(), usual_socket(is_superuser()));
+  setenv("XDG_RUNTIME_DIR", "", 1);
+  EXPECT_EQ(usual_socket(false), kSystemSocket);
   unsetenv("XDG_RUNTIME_DIR");
-  EXPECT_EQ(usual_socket(), kSystemSocket);
+  EXPECT_EQ(usual_socket(false), kSystemSocket);
 }
 
 TEST_F(SocketPlace, IsChosenByTheOptionThenTheEnvironmentThenTheSettings) {

@@ -86,6 +86,29 @@ TEST_F(OpeningADatabase, AWriteWhileItIsReadIsNoticed) {
   EXPECT_THAT(refused(), HasSubstr("changed while it was read; close RTAB-Map"));
 }
 
+TEST_F(OpeningADatabase, AWriteAheadLogThatAppearsWhileItIsReadIsNoticed) {
+  write_rtabmap_database(path_, one_of_everything("0.23.8"));
+  execute(path_, "PRAGMA journal_mode=WAL");
+  const std::string before = contents(path_);
+  const RtabmapDatabase database(path_);
+  EXPECT_NO_THROW(database.require_unchanged());
+  sqlite3* writer = nullptr;
+  ASSERT_EQ(sqlite3_open(path_.c_str(), &writer), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(writer, "UPDATE Node SET stamp = stamp + 1", nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  ASSERT_EQ(contents(path_), before);  // the change is in the log alone
+  try {
+    database.require_unchanged();
+    ADD_FAILURE() << "the log was not seen";
+  } catch (const SqliteCorrupt&) {
+    ADD_FAILURE() << "a file that is written is not a damaged one";
+  } catch (const SqliteError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("changed while it was read; close RTAB-Map"));
+  }
+  EXPECT_THROW(database.reopen(), SqliteError);
+  sqlite3_close(writer);
+}
+
 TEST_F(OpeningADatabase, RefusesWhatIsNotThereOrNotAFile) {
   EXPECT_THAT(refusal(path_), HasSubstr("no such file"));
   EXPECT_THAT(refusal(folder_.path()), HasSubstr("is a folder"));
