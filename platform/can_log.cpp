@@ -55,7 +55,8 @@ Result<void> CanLogReader::open() {
 std::string CanLogReader::explain(const Error& error) const {
   switch (error.code) {
     case ErrorCode::kNotFound:
-      return path_ + ": no such file; expected a candump log";
+      return path_ + ": no such file; expected a candump log" +
+             (path_.starts_with("log:") ? ", its name without log:" : "");
     case ErrorCode::kIo:
       return path_ + ": cannot be read: " + std::strerror(static_cast<int>(error.detail));
     case ErrorCode::kBadValue:

@@ -106,6 +106,9 @@ std::string read_zone_text(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::uintmax_t size = fs::file_size(path, error);
   if (!error && size > kMaxZoneFileBytes) {
+    if (const std::string kind = misplaced_at(path, ""); !kind.empty()) {
+      throw std::runtime_error(path + ": " + kind + ", not a zone file; expected GeoJSON");
+    }
     throw std::runtime_error(path + ": is " + std::to_string(size) +
                              " bytes long, a zone file has at most " +
                              std::to_string(kMaxZoneFileBytes) +

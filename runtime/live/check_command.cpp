@@ -183,7 +183,7 @@ class Check {
     } else {
       good(name, arguments_.source.name);
     }
-    if (source && kind == Kind::kLog) match_log();
+    if (source && kind == Kind::kLog && map_) match_log();
   }
 
   // Whether the log holds what odometry reads.

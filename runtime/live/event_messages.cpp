@@ -189,6 +189,15 @@ void EventMessages::on_event(const Event& event, const MapVersion& map) noexcept
 void EventMessages::after_cycle(const CycleRecord& cycle, const MapVersion& map) noexcept {
   if (!started_ns_) started_ns_ = cycle.now_ns;
   const CycleState& state = cycle.state;
+  odometry_came_ = odometry_came_ || !state.odometry_stale;
+  if (!odometry_came_ && !odometry_missing_ && cycle.now_ns - *started_ns_ >= kOdometryWithin_ns) {
+    odometry_missing_ = true;
+    say({"no odometry since the start: the frames that came, if any, are not those that the "
+         "settings read; zoned listen --config FILE --can SOURCE shows what comes and what is "
+         "expected",
+         true},
+        kOdometryWithin_ns);
+  }
   if (state.map_ready == map_ready_) return;
   map_ready_ = state.map_ready;
   const std::int64_t t_ns = cycle.now_ns - *started_ns_;

@@ -15,7 +15,8 @@ namespace zonepack {
 
 // Prints a line for each event that people follow a run by: zones entered, loaded, evicted and
 // refused, fixes refused, map_ready; and a warning, which says what to do, for each that calls for
-// an action. Quiet: warnings only.
+// an action, also when no odometry has come kOdometryWithin_ns after the start. Quiet: warnings
+// only.
 //
 // Lines come no faster than LineAllowance lets them, warnings on an allowance of their own, and
 // none is printed while the output would make this thread wait; what is left out is counted, and
@@ -24,6 +25,8 @@ namespace zonepack {
 // Threads: the log thread.
 class EventMessages final : public RunObserver {
  public:
+  static constexpr std::int64_t kOdometryWithin_ns = 3'000'000'000;
+
   struct Output {
     std::function<bool()> ready;  // whether a line can be printed without waiting
     std::function<void(const std::string& line)> print;
@@ -55,6 +58,7 @@ class EventMessages final : public RunObserver {
   std::int64_t t_ns_ = 0;  // of the last event, since the start
   bool map_ready_ = false;
   bool odometry_missing_ = false;  // and that was said
+  bool odometry_came_ = false;
 };
 
 }  // namespace zonepack

@@ -93,9 +93,15 @@ std::string range_text(std::int64_t first_ns, std::int64_t last_ns) {
 
 Outcome<void> check_overlap(const std::string& what, std::int64_t first_ns, std::int64_t last_ns,
                             const std::string& log, const LogMatch& match) {
-  if (first_ns <= match.last_ns() && last_ns >= match.first_ns()) return {};
+  return check_overlap(what, first_ns, last_ns, log, match.first_ns(), match.last_ns());
+}
+
+Outcome<void> check_overlap(const std::string& what, std::int64_t first_ns, std::int64_t last_ns,
+                            const std::string& log, std::int64_t log_first_ns,
+                            std::int64_t log_last_ns) {
+  if (first_ns <= log_last_ns && last_ns >= log_first_ns) return {};
   return failure(what + ": covers " + range_text(first_ns, last_ns) + ", and " + log + " " +
-                 range_text(match.first_ns(), match.last_ns()) +
+                 range_text(log_first_ns, log_last_ns) +
                  ": nothing of it could be used; expected stamps of the log's clock, in seconds");
 }
 

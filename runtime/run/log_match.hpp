@@ -53,5 +53,8 @@ std::string range_text(std::int64_t first_ns, std::int64_t last_ns);
 // the file. Both ranges are in the message.
 Outcome<void> check_overlap(const std::string& what, std::int64_t first_ns, std::int64_t last_ns,
                             const std::string& log, const LogMatch& match);
+Outcome<void> check_overlap(const std::string& what, std::int64_t first_ns, std::int64_t last_ns,
+                            const std::string& log, std::int64_t log_first_ns,
+                            std::int64_t log_last_ns);
 
 }  // namespace zonepack

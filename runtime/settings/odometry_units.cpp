@@ -68,6 +68,9 @@ Outcome<double> wheel_conversion(const OdometrySettings& odometry, const std::st
                       : "an angle such as rad, deg or turns";
   }
   const auto unit = usable_unit(text, wanted.kind, speeds, expected + ", by odometry.unit");
+  if (!unit && !speeds && usable_unit(text, wanted.kind, true, expected)) {
+    return failure(unit.error().message + "; or, since this is a speed, write model: wheel-speeds");
+  }
   if (!unit) return unit.error();
   // Makers write rpm for electrical turns too.
   if (unit->kind == DbcUnit::Kind::kNone || odometry.unit == WheelUnit::kErpm) return 1.0;

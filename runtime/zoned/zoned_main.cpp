@@ -113,16 +113,17 @@ void add_run(CLI::App& app, RunArguments& arguments, Command& command) {
   CLI::App& run = *app.add_subcommand(
       "run", "keeps the map's zones in memory while the robot drives, until SIGTERM");
   add_choices(run, arguments);
-  add_parsed(
-      run, "--can", "SOURCE",
-      "socketcan:IFACE: a CAN bus; log:FILE[@SPEED]: a CAN log, played on its own time; "
-      "sim:SCRIPT[@SPEED]: a simulated bus (platform/sim/SCRIPT.md)",
-      "socketcan:IFACE, log:FILE, sim:SCRIPT, or one of these two and @SPEED, 0.001 to 1000000",
-      [&arguments](const std::string& text) {
-        const auto source = zonepack::parse_can_source(text);
-        if (source) arguments.source = *source;
-        return source.has_value();
-      })
+  add_parsed(run, "--can", "SOURCE",
+             "socketcan:IFACE: a CAN bus; log:FILE[@SPEED]: a CAN log, played on its own time; "
+             "sim:SCRIPT[@SPEED]: a simulated bus (platform/sim/SCRIPT.md)",
+             "socketcan:IFACE, log:FILE (for a CAN log), sim:SCRIPT, or one of these two and "
+             "@SPEED, 0.001 to "
+             "1000000",
+             [&arguments](const std::string& text) {
+               const auto source = zonepack::parse_can_source(text);
+               if (source) arguments.source = *source;
+               return source.has_value();
+             })
       ->required();
   add_file(run, "--events", arguments.events,
            "write the event log, one JSON object a line ('-': standard output, as they happen)");

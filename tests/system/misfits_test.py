@@ -54,6 +54,7 @@ def other_frames():
     says(page, "but the robot was never localised: its own zone was never in memory")
     says(page, "no truth, so nothing is known of wrong zones")
     says(run("zoned", "run", "--check", *PLAYED, "--can", f"log:{log}"), mismatch)
+    says(run("zoned", "run", "--quiet", *PLAYED, "--can", f"log:{log}@1000"), "no odometry since the start")
 
 
 def another_day():
@@ -71,6 +72,9 @@ def another_day():
         told = run("zoned", *common, *arguments, code=1)
         says(told, f"{arguments[-1]}: covers 1719021600.000 to ")
         says(told, "1718021600.001 to 1718021710.441 s: nothing of it could be used")
+    told = run("zoned", "calibrate", "--config", CONFIG, "--can", LOG, "--truth", later(TRUTH, 1), code=1)
+    says(told, "covers 1719021600.000 to ")
+    says(told, "nothing of it could be used")
 
 
 def clock_set():

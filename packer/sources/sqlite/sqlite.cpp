@@ -59,8 +59,10 @@ void refuse_unless_database(const fs::path& path, const std::string& name) {
     if (const std::string kind = known_kind(first, name); !kind.empty()) {
       throw SqliteError(name + ": is " + kind + "; expected a SQLite database");
     }
-    throw SqliteError(name +
-                      ": is not a SQLite database (its first 16 bytes are not those of one)");
+    throw SqliteError(
+        name +
+        ": is not a SQLite database (its first 16 bytes are not those of one), and no "
+        "other map that is read");
   }
 }
 

@@ -138,8 +138,10 @@ Outcome<DetectorSettings> parse_detector(std::string_view provenance, const std:
   const std::string place = map.empty() ? std::string("the map") : map;
   static constexpr const char* kKnown = "zoneloc knows GFTT/ORB, ORB, SIFT and BRISK";
   if (name.empty()) {
-    return failure(place + ": its manifest does not say which detector found its features; " +
-                   "build it again from its database");
+    return failure(place +
+                   ": its manifest does not say which detector found its features; a map "
+                   "without features, such as a point cloud's, is none to localize a camera "
+                   "in; that of a database is built again from it");
   }
   unsigned number = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);

@@ -54,6 +54,7 @@ class EventMessagesTest : public testing::Test {
     CycleRecord record;
     record.now_ns = now_ns_of_run;
     record.state.map_ready = map_ready;
+    record.state.odometry_stale = false;
     record.state.zone = h1;
     record.state.pose.valid = true;
     record.state.pose.trusted = map_ready;
@@ -117,6 +118,25 @@ TEST_F(EventMessagesTest, SaysWhenTheMapIsReadyAndWhyNot) {
   console.after_cycle(cycle(false, 13'000'000'000), *map);
   EXPECT_THAT(said, ElementsAre("2.00 s: map ready: the robot is in zone H1",
                                 "map not ready: the pose is not trusted until two fixes agree"));
+}
+
+TEST_F(EventMessagesTest, SaysOnceThatNoOdometryCame) {
+  constexpr std::int64_t kWithin_ns = EventMessages::kOdometryWithin_ns;
+  EventMessages console = messages(true);
+  CycleRecord none = cycle(false, 10'000'000'000);
+  none.state.odometry_stale = true;
+  for (const std::int64_t after_ns : {std::int64_t{0}, kWithin_ns - 1}) {
+    none.now_ns = 10'000'000'000 + after_ns;
+    console.after_cycle(none, *map);
+  }
+  EXPECT_THAT(said, IsEmpty());
+  for (const std::int64_t after_ns : {kWithin_ns, 2 * kWithin_ns}) {
+    none.now_ns = 10'000'000'000 + after_ns;
+    console.after_cycle(none, *map);
+  }
+  EXPECT_THAT(said, ElementsAre(StartsWith("no odometry since the start")));
+  console.on_event(event(EventKind::kOdometryResumed), *map);
+  EXPECT_EQ(said.back(), "odometry is there");
 }
 
 TEST_F(EventMessagesTest, KeepsOnlyWarningsWhenQuiet) {

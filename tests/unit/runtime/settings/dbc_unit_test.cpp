@@ -11,6 +11,7 @@
 namespace zonepack {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -119,7 +120,8 @@ TEST(DbcUnit, ThatContradictsTheSettingsIsRefusedByName) {
   EXPECT_THAT(fault("%/s", kSpeeds), HasSubstr("the unit \"%/s\""));
   EXPECT_THAT(fault("m/s", kSpeeds + ", full_scale: 2"), HasSubstr("full_scale: has no effect"));
   EXPECT_THAT(fault("m", kSpeeds), HasSubstr("the unit \"m\"; expected a speed"));
-  EXPECT_THAT(fault("km/h", kPositions), HasSubstr("expected a length such as m or mm"));
+  EXPECT_THAT(fault("km/h", kPositions), AllOf(HasSubstr("expected a length such as m or mm"),
+                                               HasSubstr("a speed, write model: wheel-speeds")));
   EXPECT_THAT(fault("rpm", kSpeeds + ", unit: metres"), HasSubstr("the unit \"rpm\""));
   EXPECT_THAT(fault("m/s", kSpeeds + ", unit: rpm"), HasSubstr("rad/s, deg/s or rpm"));
   EXPECT_THAT(fault("rpm", kSpeeds), HasSubstr("odometry.wheel_radius: missing; the DBC file"));
