@@ -18,7 +18,9 @@ rm -rf "$kernel" "$work"
 mkdir -p "$work/debs" "$work/source"
 build_arch=$(dpkg --print-architecture)
 
-fetch() { (cd "$work/debs" && foreign_apt "$1" download "${@:2}" 2>/dev/null); }  # APT_ARCH PACKAGE...
+fetch() {  # APT_ARCH PACKAGE...
+  (cd "$work/debs" && foreign_apt "$1" download "${@:2}") 2>"$work/fetch.log" || { cat "$work/fetch.log" >&2; return 1; }
+}
 update_lists "$arch"
 # linux-image-arm64 depends on the newest: linux-image-6.1.0-56-arm64
 image=$(foreign_apt "$arch" -s install "linux-image-$flavour" | sed -n "s/^Inst \(linux-image-[0-9][^ ]*\) .*/\1/p")
@@ -28,8 +30,10 @@ version=$(dpkg-deb -f "$work"/debs/"$image"_*.deb Version)
 series=$(cut -d. -f1,2 <<<"$version")
 common=linux-headers-${release%-"$flavour"}-common
 case $flavour in rt-*) common+=-rt ;; esac
+fetch "$arch" "$common=$version" "linux-source-$series=$version"
+# The programs that build: of this machine's architecture, which Debian may have given a newer version by a day.
 update_lists "$build_arch"
-fetch "$build_arch" "$common=$version" "linux-kbuild-$series=$version" "linux-source-$series=$version"
+fetch "$build_arch" "linux-kbuild-$series"
 
 for deb in "$work"/debs/*.deb; do
   case $deb in
