@@ -37,7 +37,10 @@ stage_deb() { do_deb; }
 # What the stages robot and decisions run.
 stage_arm64() {
   do_install packages-cross.txt || exit 77
+  build test --target zonepack
   cross_build arm64 installed
+  stage "tests: the same zones from x86-64 and arm64"
+  tests/system/same_zones_test.sh tests/data build/test/bin/zonepack "$(emulated arm64 zonepack)"
   make_packages build/arm64 arm64 "$sysroot"
   stage "not run: unit tests on arm64: toolchains/run cross arm64"
 }

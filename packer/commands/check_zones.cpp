@@ -15,6 +15,7 @@
 #include "packer/console/text_table.hpp"
 #include "packer/console/words.hpp"
 #include "packer/outline/map_drawing.hpp"
+#include "packer/outline/map_server.hpp"
 #include "packer/preview/zones_page.hpp"
 #include "packer/sources/open_source.hpp"
 #include "packer/zones/orphans.hpp"
@@ -51,17 +52,20 @@ SignatureCounts count_signatures(const MapOutline& outline, const ZonePlan& plan
   return counts;
 }
 
-// What --db adds.
+// What --db and --grid add.
 struct Source {
-  SignatureCounts counts;
+  std::optional<SignatureCounts> counts;
   MapDrawing ground;  // only when a picture is wanted
 };
 
 Source read_source(const CheckZonesOptions& options, const ZonePlan& plan) {
+  Source source;
+  if (!options.grid.empty()) source.ground = drawing_of(read_served_map(options.grid));
+  if (!options.source) return source;
   const std::unique_ptr<MapSource> map = open_source(*options.source);
   require_signatures(map->outline(), options.source->name());
-  Source source{count_signatures(map->outline(), plan), {}};
-  if (options.out.empty()) return source;
+  source.counts = count_signatures(map->outline(), plan);
+  if (options.out.empty() || !options.grid.empty()) return source;
   try {
     source.ground = drawing_of(*map, options.source->slice);
     source.ground.warn_if_missing(options.source->name());
@@ -211,11 +215,11 @@ void draw(const CheckZonesOptions& options, const ZoneFile& file, const Source* 
                  .ground = nullptr,
                  .wrap = !options.out.ends_with(".html"),
                  .origin = {}};
-  if (source != nullptr) {
-    map.places = source->counts.places;
-    map.partition = source->counts.partition;
-    map.misdrawn = source->counts.misdrawn;
-    map.ground = &source->ground;
+  if (source != nullptr) map.ground = &source->ground;
+  if (source != nullptr && source->counts) {
+    map.places = source->counts->places;
+    map.partition = source->counts->partition;
+    map.misdrawn = source->counts->misdrawn;
   }
   if (const auto written = report::write_report(options.out, make_zones_page(map)); !written) {
     throw std::runtime_error(written.error().message);
@@ -229,10 +233,12 @@ int check_zones(const CheckZonesOptions& options, std::ostream& text, ordered_js
   const ZonePlan& plan = file.plan;
   Findings& findings = file.findings;
   std::optional<Source> source;
-  if (options.source && (!plan.zones.empty() || !options.out.empty())) {
+  const bool wanted = options.source && (!plan.zones.empty() || !options.out.empty());
+  if (wanted || !options.grid.empty()) {
     source = read_source(options, plan);
   }
-  const SignatureCounts* const counts = source && !plan.zones.empty() ? &source->counts : nullptr;
+  const SignatureCounts* const counts =
+      source && source->counts && !plan.zones.empty() ? &*source->counts : nullptr;
   if (counts != nullptr) {
     warn_of_empty_zones(plan, *counts, findings);
     if (counts->misdrawn) {
@@ -290,6 +296,11 @@ void add_check_zones_command(CLI::App& app, int& exit_code) {
       ->required();
   add_source_options(*command, arguments->source, "count the signatures of this map per zone");
   add_slice_option(*command, arguments->source);
+  CLI::Option* const grid =
+      command
+          ->add_option("--grid", arguments->options.grid,
+                       "draw the zones over this grid of map_server (PGM or PNG), in their frame")
+          ->type_name("map.yaml");
   command
       ->add_option("--snap", arguments->options.snap_m,
                    "how far a portal's ends may stand off the border, metres")
@@ -300,10 +311,10 @@ void add_check_zones_command(CLI::App& app, int& exit_code) {
         return fits ? std::string() : "'" + metres + "' is no distance between 0 and 10 metres";
       })
       ->capture_default_str();
-  add_report_option(
+  grid->needs(add_report_option(
       *command, arguments->options.out,
       "draw the zones over the database's occupancy grid, faults and signatures in no "
-      "zone in red: .html, .svg or .png");
+      "zone in red: .html, .svg or .png"));
   arguments->json.add_option(*command);
   command->footer(
       "Zones are Polygon features with \"name\" and \"zone_type\"; portals are LineString features "
@@ -311,9 +322,11 @@ void add_check_zones_command(CLI::App& app, int& exit_code) {
       "\"portal\": true and \"zones\": [\"A\", \"B\"]. Without portals they are found from shared "
       "borders.\n"
       "Exit code: 0 no faults, 1 faults or a file that cannot be read, 2 wrong usage.");
-  add_examples(*command, {"zonepack check-zones zones.geojson",
-                          "zonepack check-zones zones.geojson --db map.db --out preview.html",
-                          "zonepack check-zones zones.geojson --db map.db --snap 0.2 --json -"});
+  add_examples(*command,
+               {"zonepack check-zones zones.geojson",
+                "zonepack check-zones zones.geojson --db map.db --out preview.html",
+                "zonepack check-zones zones.geojson --grid outline/map.yaml --out preview.html",
+                "zonepack check-zones zones.geojson --db map.db --snap 0.2 --json -"});
   command->callback([arguments, &exit_code] {
     if (!arguments->source.path.empty()) arguments->options.source = arguments->source;
     require_writable(arguments->options.out);

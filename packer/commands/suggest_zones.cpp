@@ -65,7 +65,6 @@ std::optional<Rule> rule_of(const std::string& method) {
 // What the zones are drawn around.
 struct Ground {
   MapDrawing drawing;
-  double yaw_rad = 0;
   std::vector<SignaturePlace> places;  // of a database
   std::vector<std::int32_t> sessions;  // parallel
 };
@@ -82,10 +81,7 @@ void read_signatures(const MapOutline& outline, Ground& ground) {
 Ground read_ground(const SuggestZonesOptions& options) {
   Ground ground;
   if (!options.grid.empty()) {
-    ServedMap map = read_served_map(options.grid);
-    ground.drawing.image = std::move(map.image);
-    ground.drawing.source = map.image_file;
-    ground.yaw_rad = map.yaw_rad;
+    ground.drawing = drawing_of(read_served_map(options.grid));
   }
   if (options.source) {
     const std::unique_ptr<MapSource> source = open_source(*options.source);
@@ -127,9 +123,9 @@ FreeSpace free_space_of(const MapImage& image) {
 suggest::GridPlace place_of(const Ground& ground) {
   const MapImage& image = ground.drawing.image;
   suggest::GridPlace place;
-  if (ground.yaw_rad != 0) {
-    place.cos = std::cos(ground.yaw_rad);
-    place.sin = std::sin(ground.yaw_rad);
+  if (ground.drawing.yaw_rad != 0) {
+    place.cos = std::cos(ground.drawing.yaw_rad);
+    place.sin = std::sin(ground.drawing.yaw_rad);
   }
   const double cell = image.resolution_m;  // of the margin
   place.corner = {image.x_min_m - (place.cos * cell - place.sin * cell),
@@ -208,7 +204,7 @@ void draw(const SuggestZonesOptions& options, const Ground& ground, const ZoneFi
                  .places = ground.places,
                  .partition = {},
                  .misdrawn = {},
-                 .ground = ground.yaw_rad == 0 ? &ground.drawing : nullptr,
+                 .ground = &ground.drawing,
                  .wrap = !options.preview.ends_with(".html"),
                  .origin = "Drawn by zonepack suggest-zones from " + source_of(options) + "."};
   if (!ground.places.empty()) {

@@ -94,7 +94,8 @@ MapDrawing drawing_of(const EachSignature& each, const SliceHeights& slice) {
 
 MapDrawing drawing_of(MapSource& source, const SliceHeights& slice) {
   const std::optional<OptimisedMap>& own = source.outline().optimised_map;
-  if (own && own->resolution > 0) return {image_of(*own), "the database's own map", {}, 0, {}, {}};
+  if (own && own->resolution > 0)
+    return {image_of(*own), "the database's own map", {}, 0, {}, {}, 0};
   std::set<std::string> damages;
   SignatureRecord record;
   const EachSignature each = [&](const PayloadSet& wanted, const SeeSignature& see) {

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "packer/outline/grey_image.hpp"
 
@@ -160,6 +161,14 @@ class ServedMapReader {
 
 ServedMap read_served_map(const std::filesystem::path& yaml) {
   return ServedMapReader(yaml).read();
+}
+
+MapDrawing drawing_of(ServedMap map) {
+  MapDrawing drawing;
+  drawing.image = std::move(map.image);
+  drawing.yaw_rad = map.yaw_rad;
+  drawing.source = map.image_file;
+  return drawing;
 }
 
 }  // namespace zonepack::packer

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "packer/outline/map_image.hpp"
+#include "packer/outline/map_drawing.hpp"
 
 // Grids as ROS map_server keeps them: a YAML file, and the image that it names.
 namespace zonepack::packer {
@@ -25,5 +25,8 @@ struct ServedMap {
 // (trinary, scale, raw), as nav2_map_server does; the image is a PGM (P2, P5) or a PNG file. Throws
 // std::runtime_error that names the file, the key and what was expected.
 ServedMap read_served_map(const std::filesystem::path& yaml);
+
+// The grid as the floor plan of a map in the same frame.
+MapDrawing drawing_of(ServedMap map);
 
 }  // namespace zonepack::packer

@@ -19,6 +19,11 @@ inline constexpr std::size_t kMostRasterCells = 1'000'000;
 std::optional<report::PlanRaster> raster_of(const MapImage& image,
                                             std::size_t most_cells = kMostRasterCells);
 
+// The same of one whose rows may be turned: a picture of the box around it, with pixels along x and
+// y. A pixel shows what is below four points of each cell's size; around the grid nothing is known.
+std::optional<report::PlanRaster> raster_of(const MapDrawing& drawing,
+                                            std::size_t most_cells = kMostRasterCells);
+
 // What the signatures in a map's packs show, by their optimised poses: local grids or, without
 // any, a slice of points or voxels at the usual heights. A pack that cannot be read is left out,
 // with a warning; where nothing is shown the image has no cells.

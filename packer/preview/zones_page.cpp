@@ -74,7 +74,7 @@ report::FloorPlan plan_of(const ZonesOnMap& map) {
                            .lines = fault.place.lines,
                            .points = fault.place.points});
   }
-  if (map.ground != nullptr) plan.raster = raster_of(map.ground->image);
+  if (map.ground != nullptr) plan.raster = raster_of(*map.ground);
   return plan;
 }
 
@@ -142,7 +142,7 @@ report::Table zones_table(const ZonesOnMap& map) {
 }
 
 std::string ground_text(const ZonesOnMap& map) {
-  if (map.ground == nullptr) return "none (give --db)";
+  if (map.ground == nullptr) return "none (give --db or --grid)";
   return map.ground->image.cells.empty() ? "none in the database" : map.ground->source;
 }
 

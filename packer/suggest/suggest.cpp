@@ -11,11 +11,13 @@
 #include "packer/suggest/arms.hpp"
 #include "packer/suggest/basins.hpp"
 #include "packer/suggest/borders.hpp"
+#include "packer/suggest/cracks.hpp"
 #include "packer/suggest/doors.hpp"
 #include "packer/suggest/islets.hpp"
 #include "packer/suggest/kinds.hpp"
 #include "packer/suggest/passes.hpp"
 #include "packer/zones/findings.hpp"
+#include "packer/zones/geojson.hpp"
 #include "runtime/pack_format/limits.hpp"
 
 namespace zonepack::packer::suggest {
@@ -32,6 +34,34 @@ constexpr double kLooseRatio = 0.65;
 constexpr double kDoorReach_m = 0.5;
 constexpr double kGap_m2 = 2;  // a pillar this small needs no hole
 constexpr double kLeastPortal_m = 0.3;
+constexpr std::int32_t kMostPieces = 1 << 19;
+constexpr const char* kExpected =
+    "expected a floor plan, not noise: smooth it, cut it, or give its cells a coarser resolution";
+
+// Before each piece gets tables of its own.
+void require_few_pieces(const Regions& regions) {
+  if (regions.count <= kMostPieces) return;
+  throw std::runtime_error("its free ground falls into " + std::to_string(regions.count) +
+                           " pieces, at most " + std::to_string(kMostPieces) +
+                           " are searched for rooms; " + kExpected);
+}
+
+// Before they are written as a drawing that nobody could read again.
+void require_fits_a_file(const ZonePlan& plan) {
+  constexpr std::size_t kValuesOfFeature = 20, kValuesOfCorner = 3;  // in GeoJSON
+  std::size_t corners = 0;
+  for (const PlannedZone& zone : plan.zones) {
+    corners += zone.polygon.outer.size();
+    for (const Ring& hole : zone.polygon.holes) corners += hole.size();
+  }
+  if (kValuesOfFeature * (plan.zones.size() + plan.portals.size()) + kValuesOfCorner * corners <=
+      kMaxJsonValues) {
+    return;
+  }
+  throw std::runtime_error("its zones have " + std::to_string(corners) + " corners and " +
+                           std::to_string(plan.portals.size()) +
+                           " portals, more than a zone file may hold; " + kExpected);
+}
 
 // Regions as zones with names; `whole` are the regions before long ones were cut.
 class Drawer {
@@ -50,6 +80,7 @@ class Drawer {
     for (std::size_t i = 0; i < rings.size(); ++i) draw(rings[i], result_.plan.zones[i]);
     for (std::size_t i = 0; i < traced.size(); ++i) add_doors(traced[i], borders[i]);
     name_portals();
+    require_fits_a_file(result_.plan);
     const std::vector<std::uint32_t> zone_of = sort_by_name(result_.plan);
     for (Region& region : result_.regions.of_cell) {
       if (region != kNoRegion) {
@@ -123,30 +154,16 @@ class Drawer {
   // A portal on every stretch of a border where both sides are free.
   void add_doors(const Border& traced, const Border& border) {
     if (!traced.between_regions()) return;
-    const std::vector<Corner>& corners = traced.corners;
-    const auto is_open = [&](std::size_t i) {
-      const Corner a = corners[i], b = corners[i + 1];
-      const std::int32_t x = std::min(a.x, b.x), y = std::min(a.y, b.y);
-      const CellIndex cell = space_.at(x, y);
-      const CellIndex other = a.x == b.x ? cell - 1 : cell - space_.columns;
-      return space_.is_free(cell) && space_.is_free(other);
-    };
-    for (std::size_t from = 0; from + 1 < corners.size();) {
-      if (!is_open(from)) {
-        ++from;
-        continue;
-      }
-      std::size_t to = from + 1;
-      while (to + 1 < corners.size() && is_open(to)) ++to;
-      Segment2 segment{point(corners[from]), point(corners[to])};
-      if (corners[from] == corners[to]) {  // all around: the longest straight stretch
-        segment = longest_of(border);
-      }
+    for (const Opening& opening : openings_of(traced, space_)) {
+      const Segment2 segment =
+          width2_of(opening, traced)
+              ? Segment2{point(traced.corners[opening.from]), point(traced.corners[opening.to])}
+              : longest_of(border);
       doors_.push_back({traced.left, traced.right, segment});
-      from = to;
     }
   }
 
+  // Of a border all around: its longest straight stretch.
   Segment2 longest_of(const Border& border) const {
     Segment2 longest{point(border.corners[0]), point(border.corners[1])};
     for (std::size_t i = 1; i + 1 < border.corners.size(); ++i) {
@@ -202,6 +219,7 @@ Regions regions_of(FreeSpace& space, const Options& options) {
     case Method::kPath: {
       remove_clutter(space, kClutter_m2);
       Regions regions = stretches_of(space, options.path);
+      require_few_pieces(regions);
       fold_small(regions, space, squared_clearance(space), options.min_area_m2, {});
       return regions;
     }
@@ -217,6 +235,7 @@ Regions rooms_of(FreeSpace& space, const Options& options) {
   remove_clutter(space, kClutter_m2);
   const std::vector<std::int32_t> clearance2 = squared_clearance(space);
   Regions regions = basins_of(space, clearance2, options.door_ratio);
+  require_few_pieces(regions);
   fold_small(regions, space, clearance2, options.min_area_m2, kIslets);
   straighten_doors(regions, space, kDoorReach_m);
   renumber(regions, space);
@@ -232,22 +251,28 @@ Regions rooms_of(FreeSpace& space, const Options& options) {
 Suggestion suggest(FreeSpace space, const GridPlace& place, const Options& options) {
   Suggestion result;
   Regions whole = regions_of(space, options);
+  require_few_pieces(whole);
   if (whole.count == 0) {
     throw std::runtime_error("no room was found: no free ground of " +
                              number_text(options.min_area_m2) +
                              " m2 or more; lower --min-area, or look at the grid's resolution");
   }
-  for (std::size_t i = 0; i < space.size(); ++i) {
-    if (space.free[i] != 0 && whole.of_cell[i] == kNoRegion) ++result.dropped_cells;
-  }
   const std::vector<std::int32_t> clearance2 = squared_clearance(space);
   result.regions = whole;
   if (options.max_length_m > 0) {
     cut_long(result.regions, space, options.max_length_m);
+    require_few_pieces(result.regions);
     fold_small(result.regions, space, clearance2, options.min_area_m2, {});
     straighten_doors(result.regions, space, kDoorReach_m);
     renumber(result.regions, space);
     fold_small(result.regions, space, clearance2, options.min_area_m2, {});
+  }
+  if (part_at_cracks(result.regions, space, kLeastPortal_m)) {
+    renumber(result.regions, space);
+    fold_small(result.regions, space, clearance2, options.min_area_m2, {});
+  }
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    if (space.free[i] != 0 && result.regions.of_cell[i] == kNoRegion) ++result.dropped_cells;
   }
   fill_gaps(result.regions, space, kGap_m2);
   open_corners(result.regions, space);

@@ -39,7 +39,8 @@ struct Suggestion {
   std::size_t dropped_cells = 0;   // free cells in no zone
 };
 
-// Throws std::runtime_error when nothing is free or a zone has more vertices than a pack can hold.
+// Throws std::runtime_error when nothing is free, free ground falls into more than 2^19 pieces, a
+// zone has more vertices than a pack can hold, or all have more than a zone file.
 Suggestion suggest(FreeSpace space, const GridPlace& place, const Options& options);
 
 // The rooms alone, as regions of cells; what suggest() draws zones around. Frees clutter.

@@ -52,7 +52,7 @@ report::FloorPlan floor_plan_of(const Layout& layout, const std::vector<std::str
     }
   }
   plan.dots.push_back(std::move(dots));
-  if (page.ground != nullptr) plan.raster = raster_of(page.ground->image);
+  if (page.ground != nullptr) plan.raster = raster_of(*page.ground);
   return plan;
 }
 

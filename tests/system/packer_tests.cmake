@@ -73,7 +73,14 @@ if(TARGET zonepack)
   add_test(NAME system/slice
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/slice_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
-  set_tests_properties(system/stella system/clouds system/update_kinds system/nvblox system/slice PROPERTIES TIMEOUT 600)
+  add_test(NAME system/three_lines
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/sources/three_lines_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  add_test(NAME system/suggest_limits
+           COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/suggest_limits_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(system/stella system/clouds system/update_kinds system/nvblox system/slice system/three_lines
+                       system/suggest_limits PROPERTIES TIMEOUT 600)
 endif()
 
 if(TARGET zonepack)

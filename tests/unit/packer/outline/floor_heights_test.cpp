@@ -80,6 +80,14 @@ TEST(FloorHeights, IsNotMovedByPointsBelowTheFloor) {
   EXPECT_NEAR(*height_at(finder.find(), 3, 3), 0, 1e-3);
 }
 
+// A reflected cupboard: 4 m², so wide enough to be a floor at every height, were it not solid.
+TEST(FloorHeights, IsNotLoweredByWhatFillsSpaceBelowIt) {
+  FloorFinder finder;
+  add_level(finder, 0, 0, 6, 6, 0);
+  for (double z = -1.45; z < 0; z += 0.1) add_level(finder, 2, 2, 4, 4, z);
+  EXPECT_NEAR(*height_at(finder.find(), 1, 1), 0, 1e-3);
+}
+
 TEST(FloorHeights, FindsNoneInOnePointOrInNone) {
   FloorFinder finder;
   EXPECT_THROW(finder.find(), NoFloorPlan);

@@ -2,7 +2,9 @@
 #include "packer/outline/map_server.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "packer/preview/png_file.hpp"
@@ -107,6 +109,8 @@ TEST_F(ServedMapTest, NamesTheImageThatIsWrong) {
   EXPECT_THAT(refusal(base_), testing::HasSubstr("its width is no number that fits"));
   write("map.pgm", "P5\n100000 100000\n255\n");
   EXPECT_THAT(refusal(base_), testing::HasSubstr("at most 67108864 are read"));
+  write("map.pgm", "P5\n# " + std::string(5000, 'a') + "\n3 2\n255\n123456");
+  EXPECT_THAT(refusal(base_), testing::HasSubstr("expected its width at byte 4096"));
   write("map.pgm", "P5\n0 2\n255\n");
   EXPECT_THAT(refusal(base_), testing::HasSubstr("has no pixels"));
   write("map.pgm", "P2\n2 1\n15\n0 16\n");
@@ -115,6 +119,26 @@ TEST_F(ServedMapTest, NamesTheImageThatIsWrong) {
   EXPECT_THAT(refusal(base_), testing::HasSubstr("expected its height at byte 5"));
   write("map.pgm", "\x89PNG\r\n\x1a\n and then nothing");
   EXPECT_THAT(refusal(base_), testing::HasSubstr("is no whole PNG file"));
+  // Its first bytes say 30,000 x 30,000, which nothing follows.
+  write("map.pgm", std::string("\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\x75\x30\0\0\x75\x30", 24));
+  EXPECT_THAT(refusal(base_), testing::HasSubstr("30000 x 30000 pixels, at most 67108864"));
+}
+
+TEST_F(ServedMapTest, ReadsNothingBehindAHeaderThatClaimsTooMuch) {
+  // 900 MB, all of it a hole of the file.
+  const std::string path = write("map.pgm", "P5\n30000 30000\n255\n");
+  std::filesystem::resize_file(path, 900'000'000);
+  rusage before{}, after{};
+  getrusage(RUSAGE_SELF, &before);
+  EXPECT_THAT(refusal(base_), testing::HasSubstr("30000 x 30000 pixels, at most 67108864"));
+  getrusage(RUSAGE_SELF, &after);
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 4096);  // KiB
+}
+
+TEST_F(ServedMapTest, ReadsLongNumbersAndWhatFollowsThem) {
+  write("map.pgm", "P2\n2 2\n65535\n65535 65535\n00000 00000\n\n");
+  EXPECT_EQ(read(base_).image.cells,
+            (std::vector<Cell>{Cell::kOccupied, Cell::kOccupied, Cell::kFree, Cell::kFree}));
 }
 
 }  // namespace

@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "packer/build/map_builder.hpp"
+#include "packer/outline/grey_image.hpp"
 #include "packer/preview/png_file.hpp"
 #include "packer/sources/rtabmap/rtabmap_database.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -64,6 +66,50 @@ TEST(Raster, KeepsAWallOfOneCell) {
   const std::string without = raster_of(walled, 50)->png;
   walled.cells[7 * 40 + 13] = Cell::kOccupied;
   EXPECT_NE(raster_of(walled, 50)->png, without);
+}
+
+TEST(Raster, TurnsAGridWithItsYaw) {
+  MapDrawing drawing;
+  drawing.image = image(40, 20);
+  drawing.yaw_rad = std::acos(-1.0) / 2;
+  // A quarter turn: u along the grid goes up, v to the left; from (-1, 2) to (-2, 4).
+  MapImage upright = image(20, 40);
+  upright.x_min_m = -2;
+  for (const auto& [u, v] : {std::pair{3u, 5u}, {4u, 5u}, {39u, 0u}}) {
+    drawing.image.cells[v * 40 + u] = Cell::kOccupied;
+    upright.cells[u * 20 + 19 - v] = Cell::kOccupied;
+  }
+  const auto raster = raster_of(drawing);
+  ASSERT_TRUE(raster);
+  EXPECT_EQ(raster->png, raster_of(upright)->png);
+  EXPECT_NEAR(raster->area.min.x_m, -2, 1e-9);
+  EXPECT_NEAR(raster->area.max.x_m, -1, 1e-9);
+  EXPECT_NEAR(raster->area.min.y_m, 2, 1e-9);
+  EXPECT_NEAR(raster->area.max.y_m, 4, 1e-9);
+}
+
+TEST(Raster, ShowsATurnedCellWhereItStands) {
+  MapDrawing drawing;
+  drawing.image = image(40, 20);
+  drawing.yaw_rad = 0.6;
+  drawing.image.cells[8 * 40 + 30] = Cell::kOccupied;
+  const auto raster = raster_of(drawing);
+  const test_support::TemporaryFolder folder;
+  const std::string file = (folder.path() / "raster.png").string();
+  std::ofstream(file, std::ios::binary) << raster->png;
+  const GreyImage grey = read_grey_image(file, 10'000);
+  // Its middle is 30.5 and 8.5 cells of 5 cm along the grid's sides from (-1, 2).
+  const double x = -1 + std::cos(0.6) * 1.525 - std::sin(0.6) * 0.425;
+  const double y = 2 + std::sin(0.6) * 1.525 + std::cos(0.6) * 0.425;
+  std::size_t dark = 0;
+  for (std::size_t i = 0; i < grey.pixels.size(); ++i) {
+    if (grey.opacity[i] < 200) continue;  // free or not seen
+    ++dark;
+    EXPECT_NEAR(raster->area.min.x_m + (static_cast<double>(i % grey.width) + 0.5) * 0.05, x, 0.06);
+    EXPECT_NEAR(raster->area.max.y_m - (static_cast<double>(i / grey.width) + 0.5) * 0.05, y, 0.06);
+  }
+  EXPECT_GE(dark, 1u);
+  EXPECT_LE(dark, 5u);
 }
 
 std::string build_map(const fs::path& out, PayloadMask payload) {
