@@ -14,8 +14,8 @@ namespace {
 
 // Where to make the folder that a file lacks; empty when it is there.
 std::string missing_folder(const std::string& file, const Error& error) {
-  const bool not_found =
-      error.code == ErrorCode::kNotFound || (error.code == ErrorCode::kIo && error.detail == ENOENT);
+  const bool not_found = error.code == ErrorCode::kNotFound ||
+                         (error.code == ErrorCode::kIo && error.detail == ENOENT);
   const std::filesystem::path folder = std::filesystem::path(file).parent_path();
   std::error_code unknown;
   return not_found && !std::filesystem::exists(folder, unknown) ? folder.string() : "";
