@@ -38,6 +38,7 @@ std::vector<Touch> touches_of(const std::vector<Border>& borders, const FreeSpac
     }
   }
   std::vector<Touch> touches;
+  touches.reserve(found.size());
   for (auto& [pair, touch] : found) touches.push_back(std::move(touch));
   std::stable_sort(touches.begin(), touches.end(),
                    [](const Touch& s, const Touch& t) { return s.width2 > t.width2; });
