@@ -145,7 +145,7 @@ Outcome<void> calibrate_and_report(const CalibrateArguments& arguments) {
   const auto steps = read_steps(*settings, arguments.can, watch);
   std::vector<WheelHint> hints = wheel_hints(*settings, watch.evidence());
   if (!steps) return not_calibrated(steps.error().message, hints);
-  const auto overlap =
+  auto overlap =
       check_overlap(arguments.truth, truth.samples().front().t_ns, truth.samples().back().t_ns,
                     arguments.can, steps->front().from_ns, steps->back().to_ns);
   if (!overlap) return overlap;
