@@ -45,7 +45,7 @@ COPYRIGHT
 package() {  # COMPONENT SECTION DEPENDS SUMMARY; the description's body from standard input
   local name=zonepack-$1 section=$2 depends=$3 summary=$4
   tree=$build/packages/$name
-  rm -rf "$tree"
+  rm -rf "$tree" "$build/$name"_*.deb  # of an older version, too
   DESTDIR=$tree cmake --install "$build" --prefix /usr --component "$1" --strip >/dev/null
   mkdir -p "$tree/usr/share/doc/$name" "$tree/DEBIAN"
   write_changelog "$name"
