@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace zonepack::packer::suggest {
 namespace {
 
-// A longer island is a wall, if it is thinner than kThin_m on average.
-constexpr double kWallLength_m = 1.0, kThin_m = 0.35;
+// A longer island is a wall if it is thinner than kThin_m over its length or, where walls meet in
+// it, if all of them together are thinner than kThinArms_m.
+constexpr double kWallLength_m = 1.0, kThin_m = 0.35, kThinArms_m = 0.32;
 
 struct Island {
   std::vector<CellIndex> cells;
@@ -40,13 +42,31 @@ Island flood(const FreeSpace& space, CellIndex start, std::vector<std::uint8_t>&
   return island;
 }
 
+// The mean width of its arms: a strip's cells lie a quarter of that from its edge, however it
+// bends.
+double thickness_m(const Island& island, const FreeSpace& space) {
+  FreeSpace box;  // with a margin around the island
+  box.columns = island.right - island.left + 3;
+  box.rows = island.high - island.low + 3;
+  box.free.resize(static_cast<std::size_t>(box.columns) * static_cast<std::size_t>(box.rows));
+  for (const CellIndex cell : island.cells) {
+    const std::int32_t x = cell % space.columns - island.left + 1;
+    const std::int32_t y = cell / space.columns - island.low + 1;
+    box.free[static_cast<std::size_t>(box.at(x, y))] = 1;
+  }
+  double sum = 0;
+  for (const std::int32_t depth2 : squared_clearance(box)) sum += std::sqrt(depth2);
+  return 4 * (sum / static_cast<double>(island.cells.size()) - 0.5) * space.cell_m;
+}
+
 bool is_wall(const Island& island, const FreeSpace& space) {
   const double wide = static_cast<double>(island.right - island.left + 1) * space.cell_m;
   const double high = static_cast<double>(island.high - island.low + 1) * space.cell_m;
   const double diagonal2 = wide * wide + high * high;
   if (diagonal2 < kWallLength_m * kWallLength_m) return false;
   const double area = space.area_m2(island.cells.size());
-  return area * area < kThin_m * kThin_m * diagonal2;  // area / length
+  if (area * area < kThin_m * kThin_m * diagonal2) return true;  // area / length
+  return thickness_m(island, space) < kThinArms_m;
 }
 
 }  // namespace

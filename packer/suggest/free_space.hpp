@@ -28,7 +28,8 @@ struct FreeSpace {
 };
 
 // Frees what is no wall: islands of cells that are not free (joined by edges or corners), smaller
-// than `most_m2`. Long thin islands stay, because they are walls between two doors.
+// than `most_m2`. Long thin islands stay, because they are walls between doors, also where several
+// walls meet in one.
 void remove_clutter(FreeSpace& space, double most_m2);
 
 // Of each cell, the squared distance in cells from its centre to that of the nearest cell that is

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
 
 #include "tests/unit/packer/suggest/drawn_space.hpp"
@@ -76,6 +77,34 @@ TEST(RemoveClutter, FreesATableAndKeepsAWallBetweenTwoDoors) {
                                 0.1);
   remove_clutter(doors, 1.0);
   EXPECT_EQ(std::count(doors.free.begin(), doors.free.end(), 1), 36);
+}
+
+// Free but for `boxes`, each from (x0, y0) to (x1, y1) in cells of 5 cm.
+FreeSpace room_with(const std::vector<std::array<std::int32_t, 4>>& boxes) {
+  FreeSpace room{80, 80, 0.05, std::vector<std::uint8_t>(80 * 80, 1)};
+  for (const auto& [x0, y0, x1, y1] : boxes) {
+    for (std::int32_t y = y0; y < y1; ++y) {
+      for (std::int32_t x = x0; x < x1; ++x) room.free[static_cast<std::size_t>(room.at(x, y))] = 0;
+    }
+  }
+  return room;
+}
+
+TEST(RemoveClutter, KeepsThickWallsThatMeetInACornerOrACross) {
+  // 0.3 m thick. The corner has 36 x 6 + 18 x 6 cells, 0.81 m2, 2.16 m from end to end: 0.37 m2 a
+  // metre, as thick as a shelf. The cross has 36 x 6 + 30 x 6 cells, 0.99 m2: 0.39 m2 a metre.
+  for (FreeSpace room : {room_with({{20, 20, 56, 26}, {20, 26, 26, 44}}),
+                         room_with({{20, 35, 56, 41}, {35, 20, 41, 56}})}) {
+    const std::vector<std::uint8_t> before = room.free;
+    remove_clutter(room, 2.5);
+    EXPECT_EQ(room.free, before);
+  }
+}
+
+TEST(RemoveClutter, FreesABedAndAShelfThatStandFree) {
+  FreeSpace room = room_with({{10, 10, 28, 50}, {40, 10, 48, 60}});  // 0.9 x 2 m, 0.4 x 2.5 m
+  remove_clutter(room, 2.5);
+  EXPECT_EQ(room.free, room_with({}).free);
 }
 
 TEST(RemoveClutter, KeepsWhatIsAsLargeAsTheLimit) {
