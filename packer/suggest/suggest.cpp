@@ -30,7 +30,7 @@ constexpr double kClutter_m2 = 2.5;
 // wall.
 constexpr Islets kIslets{.least_m2 = 4, .least_width_m = 0.6};
 constexpr double kBridge_m = 1;  // from a corner behind furniture to its room
-constexpr double kLooseRatio = 0.65;
+constexpr double kLooseRatio = 0.6;
 constexpr double kDoorReach_m = 0.5;
 constexpr double kGap_m2 = 2;  // a pillar this small needs no hole
 constexpr double kLeastPortal_m = 0.3;
