@@ -2,6 +2,7 @@
 #include "packer/preview/zones_page.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <utility>
@@ -143,7 +144,8 @@ report::Table zones_table(const ZonesOnMap& map) {
 
 std::string ground_text(const ZonesOnMap& map) {
   if (map.ground == nullptr) return "none (give --db or --grid)";
-  return map.ground->image.cells.empty() ? "none in the database" : map.ground->source;
+  if (map.ground->image.cells.empty()) return "none in the database";
+  return std::filesystem::path(map.ground->source).filename().string();  // or "local grids"
 }
 
 std::vector<report::Fact> facts_of(const ZonesOnMap& map) {

@@ -47,6 +47,17 @@ cmp a.geojson b.geojson
 "$bin/zonepack" suggest-zones --grid outline/map.yaml --out c.geojson >/dev/null
 cmp a.geojson c.geojson
 
+# A grid that is turned by a yaw: its zones hold the same ground, and both pictures show it below them.
+sed 's/^origin:.*/origin: [3, -2, 0.5]/' outline/map.yaml >outline/turned.yaml
+"$bin/zonepack" suggest-zones --grid outline/turned.yaml --out turned.geojson --preview turned.svg --json turned.json \
+  >/dev/null
+jq -e --slurpfile turned turned.json '[.zones[] | [.name, .portals]] == [$turned[0].zones[] | [.name, .portals]]' a.json \
+  >/dev/null || fail "other zones of a turned grid"
+"$bin/zonepack" check-zones turned.geojson --grid outline/turned.yaml --out check.svg >/dev/null
+for picture in turned.svg check.svg; do grep -q "<image" "$picture" || fail "$picture: draws no grid"; done
+grep -o '<image[^>]*>' turned.svg | cut -c1-300 >turned.txt
+grep -o '<image[^>]*>' check.svg | cut -c1-300 | cmp turned.txt - || fail "two pictures of one grid differ"
+
 # Shorter, smaller, and by rule.
 for options in "--max-length 10" "--max-zone-bytes 300KiB" "--method grid:5m" "--method path:10m" "--method count:50"; do
   # shellcheck disable=SC2086
@@ -64,6 +75,9 @@ done
 
 # What is wrong is named, and nothing is written.
 cp a.geojson kept.geojson
+got=0
+"$bin/zonepack" check-zones a.geojson --grid outline/map.yaml >out.txt 2>&1 || got=$?
+((got == 2)) && grep -q -- "--grid requires --out" out.txt || fail "check-zones --grid without --out: $(cat out.txt)"
 refuses 2 "give --db or --grid" --out a.geojson
 refuses 2 "'voronoi' is none of basins" --grid outline/map.yaml --out a.geojson --method voronoi
 refuses 2 "'grid:0m' is none of" --grid outline/map.yaml --out a.geojson --method grid:0m
