@@ -329,10 +329,14 @@ Cycle::Wanted Cycle::list_wanted(std::int64_t now_ns) const noexcept {
   return wanted;
 }
 
-// What a localizer can use in addition to the zones on the robot's own way.
+// What a localizer can use in addition to the zones on the robot's own way: first what is there
+// already, so that two zones that take turns behind a door post do not evict each other.
 void Cycle::want_view(Wanted& wanted) const noexcept {
   if (view_m_ <= 0 || !state_.pose.valid || state_.pose.t_ns > view_until_ns_) return;
   const ZonesInView view(graph_, state_.pose.T_map_base, tracker_.pose_zone(), view_m_);
+  for (const ZoneId zone : view.zones()) {
+    if (memory_.state(zone) != ZoneState::kAbsent) wanted.add(zone);
+  }
   for (const ZoneId zone : view.zones()) wanted.add(zone);
 }
 

@@ -65,6 +65,25 @@ TEST_F(CycleTest, HasTheNextZoneReadyWhenTheRobotEntersIt) {
   EXPECT_TRUE(memory.resident(1));
 }
 
+TEST_F(CycleTest, WhatALocalizerSeesTakesNoRoomFromWhatItSeesAlready) {
+  step();
+  step({fix(10, 2)});
+  stand(40);
+  step({fix(2, 2)});  // another hypothesis
+  stand(40);
+  PoseCorrection seen = fix(2, 2);  // along the row, through both doors
+  seen.view_m = 10;
+  step({seen});
+  stand(40);
+  ASSERT_EQ(cycle.state().zone, 0u);
+  EXPECT_THAT(words(), Contains("zone_wanted b"));
+  EXPECT_FALSE(memory.resident(1));  // nearer, but its room is that of c
+  EXPECT_TRUE(memory.resident(2));
+  drive(1.9);  // b is approached
+  EXPECT_TRUE(memory.resident(1));
+  EXPECT_FALSE(memory.resident(2));
+}
+
 TEST_F(CycleTest, FollowsTheFixesAtOnceWhenTheyMoveThePose) {
   trust(2, 2);
   for (int i = 0; i < 3; ++i) {
