@@ -6,7 +6,7 @@
 # BIN holds zonepack and zoned, DATA holds hospital.db, zones.geojson and the missions scenario1_loop,
 # scenario2_roundtrip and dayshift. Nobody touches the zones between the database and the replay. A cell gives zones
 # loaded, MiB loaded and, where there are any, seconds without the robot's own zone in memory; "-" where the budget is
-# below the map's smallest. Progress goes to standard error.
+# below the map's smallest. Progress goes to standard error. With WORK, its partitions.svg shows the first mission.
 set -euo pipefail
 if [ $# -lt 3 ] || [ $# -gt 4 ]; then
   sed -n 's/^# \(usage:.*\)/\1/p' "$0" >&2
@@ -34,7 +34,7 @@ zones_of() {
 replay() {  # NAME MISSION BUDGET LABEL
   local run=$data/$2 out=$work/$1-$2-$4.json
   "$bin/zoned" replay --config "$source/config/agilex.yaml" --map "$work/$1" --can "$run/can0.log" \
-    --corrections "$run/corrections.txt" --truth "$run/base_groundtruth.txt" --budget "$3" --json "$out" \
+    --corrections "$run/corrections.txt" --truth "$run/base_groundtruth.txt" --budget "$3" --json "$out" --events "${out%.json}.jsonl" \
     >/dev/null 2>"$work/$1-$2-$4.txt" || return 0
 }
 
@@ -80,3 +80,4 @@ for name in "${names[@]}"; do
   done
   printf '\n'
 done
+python3 "$(dirname "${BASH_SOURCE[0]}")/partition_picture.py" "$work" "$data/${missions[0]}/base_groundtruth.txt" "$work/partitions.svg"
