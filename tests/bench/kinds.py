@@ -45,6 +45,15 @@ def packed_points(clouds, points):
         yield struct.pack("<4fIf", *p[:5], float(p[5]))
 
 
+def joined(clouds, submaps, frames):
+    """Submaps of so many frames each, in the frame of their first: as GLIM makes them."""
+    for first in range(0, len(submaps), frames):
+        number, stamp, T, _ = submaps[first]
+        back = [[T[k][i] for k in range(3)] + [-sum(T[k][i] * T[k][3] for k in range(3))] for i in range(3)]
+        yield number, stamp, T, [tuple(map(clouds.single, clouds.place(back, clouds.place(U, p[:3])))) + p[3:]
+                                 for _, _, U, points in submaps[first:first + frames] for p in points]
+
+
 def run(*command):
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1):
@@ -99,17 +108,21 @@ def main():
         points = [tuple(clouds.single(v) for v in clouds.place(T, p[:3])) + p[3:] for _, _, T, own in submaps for p in own]
         clouds.write_pcd(work / "cloud.pcd", points, "binary")
         clouds.write_autoware(work / "autoware", points, 10)
-        clouds.write_glim(work / "glim", submaps)
+        clouds.write_glim(work / "glim", joined(clouds, submaps, 20))
+        clouds.write_glim(work / "small-glim", submaps)
         (work / "rtabmap.raw").write_bytes(b"".join(rtabmap_bytes(options.db)))
         (work / "stella.raw").write_bytes(b"".join(stella_bytes(work / "map.db")))
         (work / "cloud.raw").write_bytes(b"".join(packed_points(clouds, points)))
-        (work / "glim.raw").write_bytes(b"".join(path.read_bytes() for path in sorted((work / "glim").glob("*/*.bin"))))
+        for dump in ("glim", "small-glim"):
+            files = sorted((work / dump).glob("*/*.bin"))
+            (work / f"{dump}.raw").write_bytes(b"".join(path.read_bytes() for path in files))
         placed = ("--align", work / "base.txt", "--camera-in-base", "0.2,0,0.5,0,0,0")
         print("| kind | source, MiB | charged, MiB, of it | stored, MiB, of LZ4 HC 9 | cold zone / dd, ms | times dd, p50 | p99 of p99 |")
         print("|---|---|---|---|---|---|---|")
         for name, path, raw, placing in (("rtabmap", options.db, "rtabmap.raw", ()), ("stella (SQLite)", "map.db", "stella.raw", placed),
                                          ("stella (MessagePack)", "map.msg", "stella.raw", placed), ("pcd", "cloud.pcd", "cloud.raw", ()),
-                                         ("autoware", "autoware", "cloud.raw", ()), ("glim", "glim", "glim.raw", ())):
+                                         ("autoware", "autoware", "cloud.raw", ()), ("glim, 20 frames a submap", "glim", "glim.raw", ()),
+                                         ("glim, one frame a submap", "small-glim", "small-glim.raw", ())):
             run(options.bin / "zonepack", "build", "--db", work / path, "--zones", zones, "--out", work / f"packed-{path}".replace("/", "-"),
                 "--payload", "features,scan,grid", "--json", work / "build.json", *placing)
             built = json.loads((work / "build.json").read_text())

@@ -84,11 +84,12 @@ ARROWS = {
                             " runtime/localize/lost runtime/localize/query runtime/odometry runtime/protocol"
                             " runtime/run runtime/settings",
     "runtime/localize/zoneloc": "platform platform/command_line platform/version runtime/localize/explain"
-                                " runtime/localize/replay runtime/localize/run runtime/protocol runtime/report runtime/run",
+                                " runtime/localize/replay runtime/localize/run runtime/pack_format/file"
+                                " runtime/protocol runtime/report runtime/run",
 
     "packer/record": "",
     "packer/align": "packer/record platform/base",
-    "packer/sources/cloud": "packer/record",
+    "packer/sources/cloud": "packer/record runtime/pack_format",
     "packer/sources/sqlite": "packer/record platform/base",
     "packer/sources/nvblox": "packer/record packer/sources/sqlite platform/base runtime/pack_format",
     "packer/sources/rtabmap": "packer/record packer/sources/sqlite platform/base",

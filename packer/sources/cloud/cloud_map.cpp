@@ -2,35 +2,49 @@
 #include "packer/sources/cloud/cloud_map.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <limits>
 #include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "runtime/pack_format/column.hpp"
 
 namespace zonepack::packer {
 namespace {
 
-// Spreads the low 10 bits of a number to every third bit.
-std::uint32_t spread_bits(std::uint32_t v) {
-  v = (v | v << 16) & 0x030000FFU;
-  v = (v | v << 8) & 0x0300F00FU;
-  v = (v | v << 4) & 0x030C30C3U;
-  return (v | v << 2) & 0x09249249U;
+// Coordinates in the form in which columns keep them.
+using Ordered = std::array<std::vector<std::uint32_t>, 3>;
+
+std::vector<std::uint32_t> ordered(const std::vector<float>& values) {
+  std::vector<std::uint32_t> forms;
+  forms.reserve(values.size());
+  for (const float v : values) forms.push_back(ordered_from_float(std::bit_cast<std::uint32_t>(v)));
+  return forms;
 }
 
-// The step of a coordinate, of 1024 between the least and the most of it.
-std::vector<std::uint32_t> steps_of(const std::vector<float>& values, float cell) {
-  const float least = *std::ranges::min_element(values);
-  std::vector<std::uint32_t> steps;
-  steps.reserve(values.size());
-  for (const float v : values) {
-    steps.push_back(static_cast<std::uint32_t>(std::clamp((v - least) / cell, 0.0F, 1023.0F)));
+// Halves the points across their longest side, down to blocks.
+void part(const Ordered& places, std::span<std::uint32_t> points) {
+  while (points.size() > kBlockRows) {
+    const std::vector<std::uint32_t>* longest = nullptr;
+    std::uint32_t most = 0;
+    for (const std::vector<std::uint32_t>& axis : places) {
+      const auto [least, last] =
+          std::ranges::minmax(points, {}, [&axis](std::uint32_t i) { return axis[i]; });
+      if (longest == nullptr || axis[last] - axis[least] > most) {
+        longest = &axis;
+        most = axis[last] - axis[least];
+      }
+    }
+    const std::size_t half = (points.size() + kBlockRows - 1) / kBlockRows / 2 * kBlockRows;
+    std::ranges::nth_element(points, points.begin() + static_cast<std::ptrdiff_t>(half), {},
+                             [&](std::uint32_t i) { return std::pair((*longest)[i], i); });
+    part(places, points.first(half));
+    points = points.subspan(half);
   }
-  return steps;
-}
-
-float extent_of(const std::vector<float>& values) {
-  const auto [least, most] = std::ranges::minmax_element(values);
-  return *most - *least;
+  std::ranges::sort(points);
 }
 
 template <typename T>
@@ -68,18 +82,10 @@ void read_points(PointStream& stream, const std::array<double, 3>& origin, TileP
   }
 }
 
-void sort_along_curve(TilePoints& points) {
-  if (points.size() < 2) return;
-  const float extent = std::max({extent_of(points.x), extent_of(points.y), extent_of(points.z)});
-  const float cell = std::max(extent / 1023, std::numeric_limits<float>::min());
-  const auto x = steps_of(points.x, cell), y = steps_of(points.y, cell),
-             z = steps_of(points.z, cell);
-  std::vector<std::uint32_t> codes(points.size()), order(points.size());
-  for (std::size_t i = 0; i < codes.size(); ++i) {
-    codes[i] = spread_bits(x[i]) | spread_bits(y[i]) << 1 | spread_bits(z[i]) << 2;
-  }
+void sort_in_blocks(TilePoints& points) {
+  std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0U);
-  std::ranges::stable_sort(order, {}, [&codes](std::uint32_t i) { return codes[i]; });
+  part({ordered(points.x), ordered(points.y), ordered(points.z)}, order);
   permute(points.x, order);
   permute(points.y, order);
   permute(points.z, order);

@@ -53,8 +53,9 @@ void read_points(PointStream& stream, const std::array<double, 3>& origin, TileP
 // Whether a point can be on a map: finite, and within 10,000 km.
 bool is_place(const CloudPoint& point);
 
-// Orders points along a Z curve over their own box, so that neighbours in space are neighbours in
-// the list; what is equal there keeps its order.
-void sort_along_curve(TilePoints& points);
+// Orders points in blocks of 32 neighbours (kBlockRows), for columns keep what is common to a block
+// once: a k-d tree over the bits of the coordinates, where numbers near zero lie as far apart as in
+// a float.
+void sort_in_blocks(TilePoints& points);
 
 }  // namespace zonepack::packer

@@ -77,7 +77,7 @@ Scan CloudSource::scan_of(const CloudTile& tile) {
                                 " points is larger than 256 MiB; give a smaller --tile METRES"});
   }
   cloud_->read(tile, points_);
-  sort_along_curve(points_);
+  sort_in_blocks(points_);
   Scan scan;
   scan.format = format_of(f);
   scan.local_transform = tile.T_base_points;

@@ -12,10 +12,10 @@ namespace zonepack::packer {
 // A point cloud: a tile is a signature with a scan.
 //
 // pose: T_map_base, the base being the point nearest to the middle of the tile. Scan: float32 x, y,
-// z and what else there is, along a Z curve; T_base_scan leads from the file's own coordinates
-// (float64 ones: from the corner of the tile). Format: RTAB-Map's 5 XYZ, 6 XYZI, 7 XYZRGB where it
-// is one of these, else kCloudFormat plus a bit for each field, in this order: 1 intensity, 2 rgb
-// (the bits 0x00RRGGBB), 4 ring.
+// z and what else there is, in blocks of 32 neighbours; T_base_scan leads from the file's own
+// coordinates (float64 ones: from the corner of the tile). Format: RTAB-Map's 5 XYZ, 6 XYZI, 7
+// XYZRGB where it is one of these, else kCloudFormat plus a bit for each field, in this order: 1
+// intensity, 2 rgb (the bits 0x00RRGGBB), 4 ring.
 class CloudSource : public MapSource {
  public:
   static constexpr std::int32_t kCloudFormat = 256;
