@@ -143,6 +143,8 @@ void print(const MapPlan& plan, std::ostream& out) {
       << size_text(plan.fixed_bytes) << "\nsmallest budget " << size_text(plan.smallest.bytes)
       << ", " << counted(plan.smallest.slots, "slot") << ", set by "
       << pair_text(plan, plan.smallest.pair.zone_a, plan.smallest.pair.zone_b)
+      << "\n  less where these are cut: build --max-zone-bytes SIZE, suggest-zones --max-length "
+         "METRES"
       << "\nto change maps live " << size_text(plan.live_change_bytes)
       << "\nwith preload.transitions or preload.learn " << size_text(plan.transitions_bytes)
       << " more\n";
