@@ -70,9 +70,10 @@ class GpioInput {
   virtual Result<std::size_t> take(std::span<GpioEdge> into) noexcept = 0;
 };
 
-// Finds and opens lines. Errors: kNotFound: detail kNoChip or kNoLine; kExists: several chips have
-// that label; kBusy: already in use; kMismatch: set up as an output where an input is expected;
-// kIo: errno.
+// Finds and opens lines.
+//
+// Errors: kNotFound: detail kNoChip or kNoLine; kExists: several chips have that label; kBusy:
+// already in use; kMismatch: set up as an output where an input is expected; kIo: errno.
 class GpioPort {
  public:
   static constexpr std::int64_t kNoChip = 0, kNoLine = 1;

@@ -12,8 +12,9 @@
 #include "platform/descriptor.hpp"
 
 // Sockets between programs of one machine that carry whole messages and file descriptors
-// (SOCK_SEQPACKET). Errors: kIo with errno; others are listed at each call.
+// (SOCK_SEQPACKET).
 //
+// Errors: kIo with errno; others are listed at each call.
 // Threads: one at a time per object.
 namespace zonepack {
 

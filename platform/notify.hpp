@@ -12,8 +12,9 @@ namespace zonepack {
 
 // Sends a service's notifications to the manager that started it, as the datagrams of sd_notify(3),
 // and the open files that the manager keeps for it across a restart (FileDescriptorStoreMax= in its
-// unit). Without a manager every call succeeds and does nothing. Errors: kIo with errno.
+// unit). Without a manager every call succeeds and does nothing.
 //
+// Errors: kIo with errno.
 // Real-time: each call sends one datagram and never waits.
 // Threads: any.
 class Notifier {

@@ -10,8 +10,9 @@
 
 namespace zonepack {
 
-// Waits for many descriptors at once. Errors: kIo with errno.
+// Waits for many descriptors at once.
 //
+// Errors: kIo with errno.
 // Threads: one; wake() by any.
 class Poller {
  public:

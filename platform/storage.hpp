@@ -33,9 +33,9 @@ enum class ReadMode : std::uint8_t {
 inline constexpr ReadMode kDefaultReadMode = ReadMode::kDirect;
 
 // A file opened for reading. Its bytes are copied out and never used in place, so a file that
-// shrinks, changes or fails meanwhile costs an error code and nothing else. Errors: kNotFound, kIo
-// with errno, kTruncated with the offset where the file ends.
+// shrinks, changes or fails meanwhile costs an error code and nothing else.
 //
+// Errors: kNotFound, kIo with errno, kTruncated with the offset where the file ends.
 // Memory: in all modes but kCached, reading leaves at most kMostPageCache in the page cache at any
 // time (it counts against the memory cgroup of the process) and next to nothing once the file is
 // closed. Other readers of the same file lose those cached pages, too.

@@ -10,7 +10,15 @@ lint() {
   ((${#bad[@]} == 0)) || { echo "lint: findings in ${bad[*]}"; return 1; }
 }
 
-lint_format() { git ls-files '*.cpp' '*.hpp' '*.c' '*.h' | xargs clang-format --dry-run -Werror; }
+lint_format() {
+  local findings=0
+  git ls-files '*.cpp' '*.hpp' '*.c' '*.h' | xargs clang-format --dry-run -Werror || findings=1
+  if git grep -nE '//.*[^ ] +(Invariant|Real-time|Threads|Memory|Ownership): ' '*.hpp'; then
+    echo "a contract begins a line of its own"
+    findings=1
+  fi
+  return $findings
+}
 
 # Sourced scripts are checked with those that source them; the guest's shell is dash.
 lint_scripts() {

@@ -134,7 +134,7 @@ what_else() {
 There is more than these tests:
    toolchains/run test --all       every stage, 80 minutes: ${stages[*]}
    toolchains/run stage NAME       one of them
-   toolchains/run prove            every claim of README, an hour
+   toolchains/run prove            every claim of tests/README.md, an hour
    toolchains/run cross arm64      packages for a robot, and its unit tests under qemu-user; or armhf
    toolchains/run system arm64     all tests on the virtual robot, which has CAN and GPIO; or armhf, rt-arm64
    ZONEPACK_HOSPITAL_DB=map.db toolchains/run test

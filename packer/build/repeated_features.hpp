@@ -17,7 +17,8 @@ namespace zonepack::packer {
 // damaged database it means that pages of one signature stand where those of another were, which
 // SQLite itself cannot see.
 //
-// Memory: some 100 bytes a signature.   Threads: any.
+// Memory: some 100 bytes a signature.
+// Threads: any.
 class RepeatedFeatures {
  public:
   // Fewer features than this may be alike by chance, as in a test pattern.

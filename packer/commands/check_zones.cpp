@@ -60,7 +60,7 @@ struct Source {
 
 Source read_source(const CheckZonesOptions& options, const ZonePlan& plan) {
   Source source;
-  if (!options.grid.empty()) source.ground = drawing_of(read_served_map(options.grid));
+  if (!options.grid.empty()) source.ground = drawing_of(read_grid_file(options.grid));
   if (!options.source) return source;
   const std::unique_ptr<MapSource> map = open_source(*options.source);
   require_signatures(map->outline(), options.source->name());

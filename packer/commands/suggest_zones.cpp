@@ -81,7 +81,7 @@ void read_signatures(const MapOutline& outline, Ground& ground) {
 Ground read_ground(const SuggestZonesOptions& options) {
   Ground ground;
   if (!options.grid.empty()) {
-    ground.drawing = drawing_of(read_served_map(options.grid));
+    ground.drawing = drawing_of(read_grid_file(options.grid));
   }
   if (options.source) {
     const std::unique_ptr<MapSource> source = open_source(*options.source);

@@ -13,7 +13,7 @@
 namespace zonepack::packer {
 namespace {
 
-// A row and what a chunk holds beside it, at their largest: the other columns of a feature, the
+// A row and what a chunk holds besides, at their largest: the other columns of a feature, the
 // record, the frame.
 constexpr std::uint64_t kMaxRowBytes = kSlotBytes - 1024;
 constexpr std::size_t kMaxTables = 1u << 16;  // a record counts tables of a part in 16 bits

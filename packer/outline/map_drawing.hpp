@@ -20,7 +20,7 @@ struct MapDrawing {
   std::size_t grids = 0;
   std::vector<std::string> warnings;
   std::string missing;  // why there are no cells, and what to do: "no local grids, ..."
-  double yaw_rad = 0;   // of its rows around its lower left corner, as in ServedMap
+  double yaw_rad = 0;   // of its rows around its lower left corner, as in GridFile
 
   std::string origin() const { return detail.empty() ? source : source + " " + detail; }
   // For a picture that is drawn without a floor plan: adds a warning that names the map.

@@ -20,13 +20,13 @@ namespace {
 constexpr std::size_t kMostYamlBytes = 65536;
 constexpr double kMostOrigin_m = 1e6;
 
-class ServedMapReader {
+class GridFileReader {
  public:
-  explicit ServedMapReader(const std::filesystem::path& yaml) : file_(yaml) {}
+  explicit GridFileReader(const std::filesystem::path& yaml) : file_(yaml) {}
 
-  ServedMap read() {
+  GridFile read() {
     parse();
-    ServedMap map;
+    GridFile map;
     map.image.resolution_m = number("resolution", std::nullopt);
     if (!(map.image.resolution_m >= 1e-3 && map.image.resolution_m <= 10)) {
       refuse("resolution", "is " + text("resolution") + ", expected 0.001 to 10 metres a pixel");
@@ -159,11 +159,9 @@ class ServedMapReader {
 
 }  // namespace
 
-ServedMap read_served_map(const std::filesystem::path& yaml) {
-  return ServedMapReader(yaml).read();
-}
+GridFile read_grid_file(const std::filesystem::path& yaml) { return GridFileReader(yaml).read(); }
 
-MapDrawing drawing_of(ServedMap map) {
+MapDrawing drawing_of(GridFile map) {
   MapDrawing drawing;
   drawing.image = std::move(map.image);
   drawing.yaw_rad = map.yaw_rad;

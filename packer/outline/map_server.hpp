@@ -15,7 +15,7 @@ inline constexpr std::size_t kMostServedCells = std::size_t{1} << 26;
 
 // The grid's lower left corner is at (x_min_m, y_min_m) of `image`, and its rows run along
 // `yaw_rad`, counter-clockwise from x, around that corner.
-struct ServedMap {
+struct GridFile {
   MapImage image;
   double yaw_rad = 0;
   std::string image_file;
@@ -24,9 +24,9 @@ struct ServedMap {
 // Reads the keys image, resolution, origin, negate, occupied_thresh, free_thresh and mode
 // (trinary, scale, raw), as nav2_map_server does; the image is a PGM (P2, P5) or a PNG file. Throws
 // std::runtime_error that names the file, the key and what was expected.
-ServedMap read_served_map(const std::filesystem::path& yaml);
+GridFile read_grid_file(const std::filesystem::path& yaml);
 
 // The grid as the floor plan of a map in the same frame.
-MapDrawing drawing_of(ServedMap map);
+MapDrawing drawing_of(GridFile map);
 
 }  // namespace zonepack::packer

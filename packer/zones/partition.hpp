@@ -63,7 +63,8 @@ Partition partition(std::span<const PlannedZone> zones, std::span<const Signatur
 
 // The zone at one place after the other, by rules 1 to 3; kNone outside of all.
 //
-// Ownership: refers to the zones.   Threads: any.
+// Ownership: refers to the zones.
+// Threads: any.
 class ZoneLookup {
  public:
   explicit ZoneLookup(std::span<const PlannedZone> zones);

@@ -39,7 +39,6 @@ class WheelWatch {
 
   WheelEvidence evidence() const;
   // Also of a drive whose windows nothing could be compared in.
-  bool has_reference() const noexcept { return !reference_.name.empty(); }
   const WheelOdometry& odometry() const noexcept { return odometry_; }
   const std::vector<SignalTrace>& traces() const noexcept { return traces_; }
   // The newest accepted increment.

@@ -46,7 +46,6 @@ class ExpectedUse final : public EvictionOrder {
   bool goes_before(ZoneId zone, ZoneId colder) noexcept override;
 
   // The forecast did worse than the least recently used order, which is followed.
-  bool follows_shadow() const noexcept { return follows_shadow_; }
 
   // What it takes from the budget: the same on every processor, as the decisions are.
   static constexpr ByteCount kOwnBytes = ByteCount{12} * 1024;

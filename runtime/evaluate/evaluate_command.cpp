@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "platform/base/counted.hpp"
+#include "platform/base/nearest_word.hpp"
 #include "platform/progress.hpp"
 #include "platform/write_output.hpp"
 #include "runtime/evaluate/choices.hpp"
@@ -174,14 +175,15 @@ bool parse_budgets(std::string_view text, EvaluateArguments& arguments) {
   return true;
 }
 
-std::optional<std::string> unknown_word(std::string_view text,
-                                        const std::vector<std::string>& known,
-                                        std::vector<std::string>& words) {
+Outcome<std::vector<std::string>> parse_names(std::string_view text,
+                                              const std::vector<std::string>& known) {
+  std::vector<std::string> names;
   for (const std::string_view part : parts_of(text)) {
-    if (std::ranges::find(known, part) == known.end()) return std::string(part);
-    words.emplace_back(part);
+    std::string& name = names.emplace_back(part);
+    if (std::ranges::find(known, part) != known.end()) continue;
+    return usage_failure("there is no '" + name + "'" + known_words_text(name, known));
   }
-  return std::nullopt;
+  return names;
 }
 
 std::vector<std::string> eviction_names() { return names_of(eviction_policies()); }

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
+#include "platform/base/failure.hpp"
 #include "runtime/evaluate/drives.hpp"
 
 namespace zonepack {
@@ -28,10 +28,10 @@ struct EvaluateArguments {
 // "auto", or sizes with commas between; false for another text.
 bool parse_budgets(std::string_view text, EvaluateArguments& arguments);
 
-// Names with commas between, each of which `known` has; nothing, and the word, for another.
-std::optional<std::string> unknown_word(std::string_view text,
-                                        const std::vector<std::string>& known,
-                                        std::vector<std::string>& words);
+// Names with commas between, each of which `known` has. The message names the first other one, and
+// those that may be meant.
+Outcome<std::vector<std::string>> parse_names(std::string_view text,
+                                              const std::vector<std::string>& known);
 std::vector<std::string> eviction_names();
 std::vector<std::string> preload_names();
 

@@ -55,7 +55,8 @@ struct ListenPicture {
 
 // Decodes the frames of a bus and follows the wheels through them.
 //
-// Memory: bounded, however long it listens.   Threads: one.
+// Memory: bounded, however long it listens.
+// Threads: one.
 class Listener {
  public:
   static constexpr std::size_t kMostIds = 1024;

@@ -17,9 +17,11 @@ namespace zonepack {
 // zoned, canplayer and log2asc read.
 //
 // Stamps are on the wall clock as it stood at the start: one that is set later does not tear the
-// recording apart. Real-time: receive() adds a copy for each frame; where the writer does not keep
-// up, the recording loses frames, the run none.   Threads: receive(), dropped() and status() by the
-// control thread; the rest by one other.
+// recording apart.
+//
+// Real-time: receive() adds a copy for each frame; where the writer does not keep up, the recording
+// loses frames, the run none.
+// Threads: receive(), dropped() and status() by the control thread; the rest by one other.
 class CanCapture final : public CanBus {
  public:
   // clock_offset_ns: wall clock minus the clock of the frames' stamps.

@@ -65,8 +65,9 @@ struct ControlPorts {
 // Overload, each counted in OverloadCounters: frames beyond most_frames wait on the bus, commands,
 // corrections and edges of lines beyond the bounds below in their queues, so a cycle's work stays
 // bounded; a cycle that begins a period or more late leaves whole periods out instead of hurrying
-// after them; a queue to a slower thread that is full loses what was for it, never time. Real-time:
-// after the first cycle run() neither allocates, locks, reads files, logs nor throws.
+// after them; a queue to a slower thread that is full loses what was for it, never time.
+//
+// Real-time: after the first cycle run() neither allocates, locks, reads files, logs nor throws.
 class ControlLoop {
  public:
   static constexpr std::size_t kMostCorrections = 16;

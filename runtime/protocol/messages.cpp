@@ -61,7 +61,7 @@ const char* to_string(wire::Fault fault) noexcept {
     case wire::Fault::NotFound:
       return "not found";
     case wire::Fault::NoRoom:
-      return "no room beside the pins and the largest pair of neighbours";
+      return "no room besides the pins and the largest pair of neighbours";
     case wire::Fault::StaleMap:
       return "the map has changed";
     case wire::Fault::Unavailable:

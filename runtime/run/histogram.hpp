@@ -10,7 +10,9 @@
 namespace zonepack {
 
 // Counts durations so that percentiles come out at most 3 % too high, from 0 to 18 minutes.
-// Real-time: add() is O(1), figures() one pass over the counters; no allocation.   Threads: one.
+//
+// Real-time: add() is O(1), figures() one pass over the counters; no allocation.
+// Threads: one.
 class Histogram {
  public:
   void add(std::int64_t ns) noexcept;

@@ -90,7 +90,7 @@ Outcome<void> check_limits(const Catalog& catalog, const ResidencyLimits& limits
   if (widest.slots > slots) {
     return failure(
         "zone " + widest.name + " takes " + std::to_string(widest.slots * limits.slot_bytes) +
-            " bytes beside " + std::to_string(limits.fixed) +
+            " bytes besides " + std::to_string(limits.fixed) +
             " for tables and buffers, over the budget of " + format_byte_count(limits.budget) +
             "; " + smallest_budget_text(catalog, pinned),
         ErrorCode::kNoRoom);

@@ -142,9 +142,8 @@ Outcome<LearnedTransitions> load_transitions(const std::string& path) {
                        "; expected a file of transitions, as zoned learn writes it",
                    file.error().code);
   }
-  std::string why;
-  auto learned = read_transitions(*file, &why);
-  if (!learned) return failure(path + ": " + why, learned.error().code);
+  auto learned = read_transitions(*file);
+  if (!learned) return failure(path + ": " + learned.error().message, learned.error().code);
   return std::move(learned).value();
 }
 

@@ -162,7 +162,7 @@ constexpr StatusFigure kFigures[] = {
      ZP_FIELD(clients_dropped_total, server.clients_dropped)},
     {"throttled", "zoned_throttled_total", kCounter,
      "Times that a program had asked for all it may.", ZP_FIELD(throttled_total, server.throttled)},
-    {"malformed", "zoned_malformed_total", kCounter, "Messages that were none.",
+    {"malformed", "zoned_malformed_total", kCounter, "Messages that could not be read.",
      ZP_FIELD(malformed_total, server.malformed)},
     {"events_undelivered", "zoned_events_undelivered_total", kCounter,
      "Events that a slow program lost.",

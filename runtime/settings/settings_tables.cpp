@@ -234,7 +234,7 @@ const Fields<ServeSettings>& serve_fields() {
        "a second socket, through which nothing can be changed; empty: none"},
       {"looking_mode", &S::looking_mode, 0, 0, "", "mode of that socket file"},
       {"clients", &S::clients, 1, 1000, "", "most programs connected at once"},
-      {"requests", &S::requests_per_s, 1, 1e6, "1/s",
+      {"requests", &S::requests_per_s, 1, 1e6, "a second",
        "most requests of one program; further ones wait"},
       {"lease", &S::lease_s, 0.01, 3600, "s",
        "how long a reader may hold a zone before it must ask again"},

@@ -96,10 +96,9 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments, std::function<int
         .add_option_function<std::string>(
             option,
             [option, known, &words](const std::string& text) {
-              if (const auto unknown = unknown_word(text, known, words)) {
-                throw CLI::ValidationError(
-                    option, "there is no '" + *unknown + "'" + known_words_text(*unknown, known));
-              }
+              auto parsed = parse_names(text, known);
+              if (!parsed) throw CLI::ValidationError(option, parsed.error().message);
+              words = std::move(parsed).value();
             },
             help + listed(known))
         ->type_name("NAME,...");

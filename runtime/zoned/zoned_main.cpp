@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // zoned: the robot's program. Wiring only; `replay` lives in runtime/replay, `run` in runtime/live,
 // `listen` in runtime/listen, `calibrate` in runtime/calibrate; evaluate_options and learn_options
-// are beside.
+// are in this folder.
 #include <CLI/CLI.hpp>
 #include <functional>
 

@@ -20,20 +20,9 @@ constexpr std::size_t kMostNames = Transitions::kMostContexts * (2 + Successors:
 constexpr std::size_t kMostContextBytes = 16 + Successors::kMost * 20;
 constexpr std::size_t kFixedBytes = 128;
 
-// What is wrong with a file, in words and as a code.
-class Refusal {
- public:
-  explicit Refusal(std::string* why) : why_(why) {}
-  Error operator()(ErrorCode code, std::string why, std::int64_t detail = 0) const {
-    if (why_ != nullptr) *why_ = std::move(why);
-    return {code, detail};
-  }
+Failure refuse(ErrorCode code, std::string why) { return failure(std::move(why), code); }
 
- private:
-  std::string* why_;
-};
-
-Result<ByteSpan> content_of(ByteSpan file, const Refusal& refuse) {
+Outcome<ByteSpan> content_of(ByteSpan file) {
   ByteReader header(file);
   for (const std::uint8_t byte : kMagic) {
     if (header.u8() == byte) continue;
@@ -46,10 +35,9 @@ Result<ByteSpan> content_of(ByteSpan file, const Refusal& refuse) {
   const std::uint64_t checksum = header.u64();
   if (!header.ok()) return refuse(ErrorCode::kTruncated, "ends within its header");
   if (major != kMajor) {
-    return refuse(ErrorCode::kBadVersion,
-                  "is of version " + std::to_string(major) + ", this zoned reads version " +
-                      std::to_string(kMajor) + "; learn it again",
-                  major);
+    return refuse(ErrorCode::kBadVersion, "is of version " + std::to_string(major) +
+                                              ", this zoned reads version " +
+                                              std::to_string(kMajor) + "; learn it again");
   }
   if (size > header.left()) {
     return refuse(ErrorCode::kTruncated, "holds " + std::to_string(header.left()) + " of " +
@@ -63,7 +51,7 @@ Result<ByteSpan> content_of(ByteSpan file, const Refusal& refuse) {
   return content;
 }
 
-Result<void> read_names(ByteReader& in, LearnedTransitions& learned, const Refusal& refuse) {
+Outcome<void> read_names(ByteReader& in, LearnedTransitions& learned) {
   const std::uint64_t count = in.varint();
   if (count > kMostNames || count > in.left()) {
     return refuse(ErrorCode::kTooLarge, "names " + std::to_string(count) + " zones, at most " +
@@ -74,8 +62,7 @@ Result<void> read_names(ByteReader& in, LearnedTransitions& learned, const Refus
     std::string name(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (!in.ok() || name_fault(name) || (i > 0 && name <= learned.zones.back())) {
       return refuse(ErrorCode::kBadValue,
-                    "zone " + std::to_string(i) + ": is no name, or not after the one before it",
-                    static_cast<std::int64_t>(i));
+                    "zone " + std::to_string(i) + ": is no name, or not after the one before it");
     }
     learned.zones.push_back(std::move(name));
   }
@@ -103,7 +90,7 @@ bool read_entries(ByteReader& in, std::uint64_t zones, std::uint32_t steps,
   return true;
 }
 
-Result<void> read_contexts(ByteReader& in, LearnedTransitions& learned, const Refusal& refuse) {
+Outcome<void> read_contexts(ByteReader& in, LearnedTransitions& learned) {
   const std::uint64_t count = in.varint();
   if (count > Transitions::kMostContexts || count > in.left()) {
     return refuse(ErrorCode::kTooLarge, "holds " + std::to_string(count) + " contexts, at most " +
@@ -123,8 +110,7 @@ Result<void> read_contexts(ByteReader& in, LearnedTransitions& learned, const Re
         (!first && key(context) <= key(learned.contexts.back()))) {
       return refuse(ErrorCode::kBadValue,
                     "context " + std::to_string(i) +
-                        ": a zone, count or time is out of its range, or it is out of order",
-                    static_cast<std::int64_t>(i));
+                        ": a zone, count or time is out of its range, or it is out of order");
     }
     learned.contexts.push_back(context);
   }
@@ -224,9 +210,8 @@ std::vector<std::byte> write_transitions(const LearnedTransitions& learned) {
   return file;
 }
 
-Result<LearnedTransitions> read_transitions(ByteSpan file, std::string* why) {
-  const Refusal refuse(why);
-  const auto content = content_of(file, refuse);
+Outcome<LearnedTransitions> read_transitions(ByteSpan file) {
+  const auto content = content_of(file);
   if (!content) return content.error();
   LearnedTransitions learned;
   ByteReader in(*content);
@@ -235,8 +220,8 @@ Result<LearnedTransitions> read_transitions(ByteSpan file, std::string* why) {
   read_digest(in, learned.origin);
   learned.steps = in.u32();
   if (!in.ok()) return refuse(ErrorCode::kBadStructure, "ends before its zones");
-  if (const auto read = read_names(in, learned, refuse); !read) return read.error();
-  if (const auto read = read_contexts(in, learned, refuse); !read) return read.error();
+  if (const auto read = read_names(in, learned); !read) return read.error();
+  if (const auto read = read_contexts(in, learned); !read) return read.error();
   return learned;
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/base/result.hpp"
+#include "platform/base/failure.hpp"
 #include "runtime/pack_format/file/checksum.hpp"
 #include "runtime/zones/transitions.hpp"
 
@@ -33,9 +33,9 @@ LearnedTransitions save(const Transitions& transitions);
 
 std::vector<std::byte> write_transitions(const LearnedTransitions& learned);
 
-// kTruncated, kBadMagic, kBadVersion, kBadChecksum, kBadStructure, kBadValue; `why`, unless null,
-// receives which part and what was expected.
-Result<LearnedTransitions> read_transitions(ByteSpan file, std::string* why = nullptr);
+// kTruncated, kBadMagic, kBadVersion, kBadChecksum, kBadStructure, kBadValue; the message says
+// which part, and what was expected, without the file's name.
+Outcome<LearnedTransitions> read_transitions(ByteSpan file);
 
 // What a file may be long: names of all zones of the fullest table, and its contexts.
 inline constexpr std::size_t kMostTransitionsBytes = std::size_t{2} * 1024 * 1024;

@@ -212,8 +212,11 @@ class Architect {
   void open(std::size_t a, std::size_t b, const Rect& wall) {
     const bool along_x = wall.width() > wall.height();
     const double length = std::max(wall.width(), wall.height());
-    Opening opening{a,       b,          0, 0, std::min(between(0.7, 1.2), length - wall_m_ - 0.2),
-                    along_x, chance(0.5)};
+    Opening opening{.a = a,
+                    .b = b,
+                    .width = std::min(between(0.7, 1.2), length - wall_m_ - 0.2),
+                    .along_x = along_x,
+                    .leaf = chance(0.5)};
     const bool big =
         recipe_.layout == PlanRecipe::Layout::kLobby && lobby_ == a && rooms_[b].corridor;
     if (big) {  // the corridor ends in the lobby, as wide as it is

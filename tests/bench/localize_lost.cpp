@@ -34,7 +34,7 @@
 #include "runtime/localize/camera/image_list.hpp"
 #include "runtime/localize/lost/lost_search.hpp"
 #include "runtime/localize/query/candidates.hpp"
-#include "runtime/localize/query/map_folder.hpp"
+#include "runtime/localize/query/stored_map.hpp"
 #include "runtime/odometry/se2.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
 #include "runtime/run/run_files.hpp"
@@ -188,7 +188,7 @@ int main(int argc, char** argv) {
   const auto truth = read_truth(mission + "/base_groundtruth.txt");
   if (!truth) stop(truth.error().message);
   const std::vector<Pose2> wheels = by_wheels(mission + "/can0.log", argv[3], *images);
-  const auto map = open_map_folder(argv[1]);
+  const auto map = open_stored_map(argv[1]);
   if (!map) stop(map.error().message);
   std::vector<Zone> zones(map->catalog.zones.size());
   std::vector<const MapFeatures*> whole;

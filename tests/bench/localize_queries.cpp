@@ -30,7 +30,7 @@
 #include "runtime/localize/camera/image_file.hpp"
 #include "runtime/localize/camera/image_list.hpp"
 #include "runtime/localize/query/localizer.hpp"
-#include "runtime/localize/query/map_folder.hpp"
+#include "runtime/localize/query/stored_map.hpp"
 #include "runtime/localize/replay/map_error.hpp"
 #include "runtime/odometry/poses_apart.hpp"
 #include "runtime/odometry/se2.hpp"
@@ -118,7 +118,7 @@ int main(int argc, char** argv) {
   if (!images) stop(images.error().message);
   const std::vector<TruePose> truth = read_truth(mission + "/base_groundtruth.txt");
   if (truth.empty()) stop(mission + "/base_groundtruth.txt: no poses");
-  const auto map = open_map_folder(argv[1]);
+  const auto map = open_stored_map(argv[1]);
   if (!map) stop(map.error().message);
   std::vector<MapFeatures> signatures;
   for (ZoneId zone = 0; zone < map->catalog.zones.size(); ++zone) {

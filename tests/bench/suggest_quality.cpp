@@ -44,8 +44,7 @@ void write_picture(const std::string& path, const DrawnPlan& plan,
 }
 
 // Of each cell that is free, the zone that holds its centre.
-std::vector<std::int32_t> zone_of_cells(const packer::ServedMap& map,
-                                        const packer::ZonePlan& plan) {
+std::vector<std::int32_t> zone_of_cells(const packer::GridFile& map, const packer::ZonePlan& plan) {
   const packer::MapImage& image = map.image;
   std::vector<std::int32_t> zone_of(image.cells.size(), -1);
   for (std::size_t z = 0; z < plan.zones.size(); ++z) {
@@ -69,7 +68,7 @@ std::vector<std::int32_t> zone_of_cells(const packer::ServedMap& map,
 }
 
 int compare(const std::string& grid, const std::string& truth, const std::string& zones) {
-  const packer::ServedMap map = packer::read_served_map(grid);
+  const packer::GridFile map = packer::read_grid_file(grid);
   const packer::ZonePlan drawn = packer::load_zone_file(truth).plan;
   const packer::ZonePlan suggested = packer::load_zone_file(zones).plan;
   const RoomScores scores = score_rooms(zone_of_cells(map, drawn), zone_of_cells(map, suggested));
@@ -106,7 +105,10 @@ int run(int argc, char** argv) {
       for (const int look : {0, 1, 2}) {
         RoomScores sum;
         double most_ms = 0;
-        PlanRecipe recipe{layout, 1, look > 0, furnished, look == 2 ? 0.35 : 0};
+        PlanRecipe recipe{.layout = layout,
+                          .scanned = look > 0,
+                          .furnished = furnished,
+                          .turned_rad = look == 2 ? 0.35 : 0};
         for (int seed = 1; seed <= seeds; ++seed) {
           recipe.seed = static_cast<std::uint64_t>(seed);
           DrawnPlan plan = draw_plan(recipe);

@@ -237,7 +237,11 @@ Transform level_pose(float x, float y, float z, int quarter_turns) {
 }
 
 Link make_link(std::int32_t to, std::int32_t type, const Transform& transform) {
-  Link link{to, type, transform, std::vector<double>(36, 0.0), std::nullopt};
+  Link link{.to = to,
+            .type = type,
+            .transform = transform,
+            .information = std::vector<double>(36, 0.0),
+            .user_data = {}};
   for (std::size_t i = 0; i < 6; ++i) link.information[i * 7] = i < 3 ? 128 : 1024;
   link.information[1] = link.information[6] = 0.25;
   return link;

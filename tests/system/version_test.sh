@@ -21,7 +21,7 @@ expect() {  # PROGRAM FORMATS
 expect zonepack "$pack"
 expect zoned "$pack, $recording"
 expect zonectl "$protocol"
-expect zoneloc "$protocol"
+expect zoneloc "$pack, $protocol"
 
 git() { command git -c user.name=test -c user.email=test@example.org "$@"; }
 header() {  # SOURCE: asks for the commit of it

@@ -30,7 +30,7 @@ function(zonepack_program name dir)
   zonepack_settings(${name})
   # All of a program is locked into a robot's memory, so it holds only what it calls (1 MiB less of zoned), and looks
   # symbols up at its start instead of in a control cycle.
-  target_link_options(${name} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-Wl,--gc-sections> -Wl,-z,now)
+  target_link_options(${name} PRIVATE -Wl,-z,now)
 endfunction()
 
 # For code that no robot waits for: half the size, in a program that is locked into memory whole.
@@ -48,8 +48,7 @@ function(zonepack_settings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off
                          $<$<NOT:$<CONFIG:Debug>>:-ffunction-sections$<SEMICOLON>-fdata-sections>
                          $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -fno-tree-slp-vectorize> $<$<BOOL:${ZONEPACK_WERROR}>:-Werror>)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-ffunction-sections -fdata-sections>)
-  target_link_options(${target} PRIVATE $<$<CONFIG:Release>:-Wl,--gc-sections>)
+  target_link_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-Wl,--gc-sections>)
   target_compile_definitions(${target} PRIVATE EIGEN_DONT_VECTORIZE)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                              $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>

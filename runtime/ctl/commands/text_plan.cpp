@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/ctl/commands/floor_plan.hpp"
+#include "runtime/ctl/commands/text_plan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,10 +15,10 @@ namespace {
 constexpr double kHeight = 2;  // of a character, in its widths
 
 // Even-odd rule.
-bool is_inside(const FloorPlan::Outline& outline, FloorPlan::Point p) noexcept {
+bool is_inside(const TextPlan::Outline& outline, TextPlan::Point p) noexcept {
   bool inside = false;
   for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
-    const FloorPlan::Point a = outline[i], b = outline[j];
+    const TextPlan::Point a = outline[i], b = outline[j];
     if ((a.y_m > p.y_m) == (b.y_m > p.y_m)) continue;
     if (p.x_m < a.x_m + (b.x_m - a.x_m) * (p.y_m - a.y_m) / (b.y_m - a.y_m)) inside = !inside;
   }
@@ -32,8 +32,7 @@ std::string_view environment(const char* name) {
 
 }  // namespace
 
-FloorPlan::FloorPlan(std::vector<Outline> zones, bool utf8)
-    : zones_(std::move(zones)), utf8_(utf8) {
+TextPlan::TextPlan(std::vector<Outline> zones, bool utf8) : zones_(std::move(zones)), utf8_(utf8) {
   constexpr double kFar = std::numeric_limits<double>::max();
   low_ = {kFar, kFar};
   high_ = {-kFar, -kFar};
@@ -54,7 +53,7 @@ FloorPlan::FloorPlan(std::vector<Outline> zones, bool utf8)
   if (!(reach > 0 && std::isfinite(reach))) zones_.clear();
 }
 
-std::size_t FloorPlan::zone_of(Point p) const noexcept {
+std::size_t TextPlan::zone_of(Point p) const noexcept {
   for (std::size_t i = 0; i < zones_.size(); ++i) {
     const auto& [low, high] = boxes_[i];
     if (p.x_m < low.x_m || p.x_m > high.x_m || p.y_m < low.y_m || p.y_m > high.y_m) continue;
@@ -63,7 +62,7 @@ std::size_t FloorPlan::zone_of(Point p) const noexcept {
   return kNothing;
 }
 
-void FloorPlan::rasterise(Size size) const {
+void TextPlan::rasterise(Size size) const {
   if (raster_.size.columns == size.columns && raster_.size.rows == size.rows) return;
   raster_.size = size;
   const double width_m = high_.x_m - low_.x_m, height_m = high_.y_m - low_.y_m;
@@ -84,13 +83,13 @@ void FloorPlan::rasterise(Size size) const {
   }
 }
 
-std::size_t FloorPlan::at(int column, int row) const noexcept {
+std::size_t TextPlan::at(int column, int row) const noexcept {
   if (column < 0 || column >= raster_.columns || row < 0 || row >= raster_.rows) return kNothing;
   return raster_.zone_at[static_cast<std::size_t>(row) * static_cast<std::size_t>(raster_.columns) +
                          static_cast<std::size_t>(column)];
 }
 
-const char* FloorPlan::glyph_of(Look look) const noexcept {
+const char* TextPlan::glyph_of(Look look) const noexcept {
   switch (look) {
     case Look::kOwn:
       return utf8_ ? "▓" : "@";
@@ -105,7 +104,7 @@ const char* FloorPlan::glyph_of(Look look) const noexcept {
   }
 }
 
-const char* FloorPlan::arrow_of(double yaw_rad) const noexcept {
+const char* TextPlan::arrow_of(double yaw_rad) const noexcept {
   static constexpr const char* kArrows[] = {"→", "↗", "↑", "↖", "←", "↙", "↓", "↘"};
   static constexpr const char* kPlain[] = {">", "^", "<", "v"};
   const int directions = utf8_ ? 8 : 4;
@@ -115,14 +114,14 @@ const char* FloorPlan::arrow_of(double yaw_rad) const noexcept {
   return utf8_ ? kArrows[sector % directions] : kPlain[sector % directions];
 }
 
-int FloorPlan::columns_in(int rows) const noexcept {
+int TextPlan::columns_in(int rows) const noexcept {
   const double width_m = high_.x_m - low_.x_m, height_m = high_.y_m - low_.y_m;
   constexpr double kMost = 1e6;  // of a map that is almost a line
   return static_cast<int>(std::min(std::ceil(kHeight * rows * width_m / height_m), kMost));
 }
 
-std::vector<ScreenLine> FloorPlan::draw(Size size, const std::vector<Shade>& shades,
-                                        const std::optional<Robot>& robot, bool color) const {
+std::vector<ScreenLine> TextPlan::draw(Size size, const std::vector<Shade>& shades,
+                                       const std::optional<Robot>& robot, bool color) const {
   std::vector<ScreenLine> lines;
   if (empty() || size.columns < 1 || size.rows < 1) return lines;
   rasterise(size);

@@ -16,7 +16,7 @@ namespace zonepack {
 // Zones are shaded by their state and bear their names where there is room; an arrow is the robot.
 //
 // Threads: one. draw() remembers which zone each character shows, for the last size.
-class FloorPlan {
+class TextPlan {
  public:
   struct Point {
     double x_m = 0, y_m = 0;
@@ -36,9 +36,9 @@ class FloorPlan {
     int columns = 0, rows = 0;
   };
 
-  FloorPlan() = default;
+  TextPlan() = default;
   // One outline a zone. utf8: the terminal shows more than ASCII.
-  FloorPlan(std::vector<Outline> zones, bool utf8);
+  TextPlan(std::vector<Outline> zones, bool utf8);
 
   bool empty() const noexcept { return zones_.empty(); }
 

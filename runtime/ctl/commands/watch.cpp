@@ -60,8 +60,8 @@ Outcome<void> watch_lines(CtlSession& session, WatchView& view) {
 
 // The outlines of the zones that the view shows; a zoned that does not know the question gets no
 // plan drawn.
-FloorPlan read_plan(CtlSession& session) {
-  std::vector<FloorPlan::Outline> zones;
+TextPlan read_plan(CtlSession& session) {
+  std::vector<TextPlan::Outline> zones;
   for (std::uint32_t total = 1; zones.size() < std::min<std::size_t>(total, kMostZones);) {
     const auto first = static_cast<std::uint32_t>(zones.size());
     const auto page =
@@ -69,7 +69,7 @@ FloorPlan read_plan(CtlSession& session) {
     if (!page || (*page)->outlines() == nullptr || (*page)->outlines()->size() == 0) break;
     total = (*page)->total();
     for (const wire::Outline* const outline : *(*page)->outlines()) {
-      FloorPlan::Outline& points = zones.emplace_back();
+      TextPlan::Outline& points = zones.emplace_back();
       if (outline->points() == nullptr) continue;
       for (const wire::OutlinePoint* const point : *outline->points()) {
         points.push_back({point->x(), point->y()});

@@ -223,19 +223,19 @@ bool WatchView::add_plan(const wire::Status& status, Size size, bool color,
   const int rows = beside ? free : free - std::min(static_cast<int>(events_.size()), kLeastEvents);
   if (rows < kLeastPlanRows) return false;
   const std::string zone(view_of(status.zone()));
-  std::vector<FloorPlan::Shade> shades;
+  std::vector<TextPlan::Shade> shades;
   for (const Zone& each : zones_) {
     const bool resident = each.state == wire::ZoneState::Resident;
     const bool filling = each.state == wire::ZoneState::Filling;
     shades.push_back({.name = each.name,
                       .style = style_of(each),
-                      .look = each.name == zone ? FloorPlan::Look::kOwn
-                              : resident        ? FloorPlan::Look::kResident
-                              : filling         ? FloorPlan::Look::kFilling
-                              : each.wanted     ? FloorPlan::Look::kWanted
-                                                : FloorPlan::Look::kAbsent});
+                      .look = each.name == zone ? TextPlan::Look::kOwn
+                              : resident        ? TextPlan::Look::kResident
+                              : filling         ? TextPlan::Look::kFilling
+                              : each.wanted     ? TextPlan::Look::kWanted
+                                                : TextPlan::Look::kAbsent});
   }
-  std::optional<FloorPlan::Robot> robot;
+  std::optional<TextPlan::Robot> robot;
   if (const wire::PoseReport* const pose = status.pose();
       pose != nullptr && pose->valid() && pose->pose() != nullptr) {
     robot = {pose->pose()->x(), pose->pose()->y(), pose->pose()->yaw()};

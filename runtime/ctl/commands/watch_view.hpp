@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/ctl/commands/floor_plan.hpp"
+#include "runtime/ctl/commands/text_plan.hpp"
 #include "runtime/protocol/messages.hpp"
 
 namespace zonepack {
@@ -32,7 +32,7 @@ class WatchView {
   void set_zones(std::vector<Zone> zones) { zones_ = std::move(zones); }
 
   // What the plan is drawn from; by the places of zones in set_zones().
-  void set_plan(FloorPlan plan) { plan_ = std::move(plan); }
+  void set_plan(TextPlan plan) { plan_ = std::move(plan); }
 
   // Adds a status, received `at_s` seconds after the first, to the timeline.
   void add_status(const wire::Status& status, double at_s);
@@ -59,7 +59,7 @@ class WatchView {
   bool add_plan(const wire::Status& status, Size size, bool color,
                 std::vector<std::string>& lines) const;
 
-  FloorPlan plan_;
+  TextPlan plan_;
   std::vector<Zone> zones_;
   std::deque<Sample> timeline_;
   std::deque<std::string> events_;

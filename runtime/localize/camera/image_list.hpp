@@ -19,7 +19,9 @@ struct ListedImage {
 // lines that begin with # or % and a first line of column names are passed over; CR and a byte
 // order mark too. The file is the rest of the line, blanks included; where there is no such file,
 // its first word (lists of associated images have more columns). Fails for a list without images,
-// and names the files that are missing. Memory: lists of at most 1,000,000 images.
+// and names the files that are missing.
+//
+// Memory: lists of at most 1,000,000 images.
 Outcome<std::vector<ListedImage>> read_image_list(const std::string& file);
 
 // The images of a folder: those of its rgb.txt; without one, its *.jpg, *.jpeg and *.png files

@@ -81,13 +81,13 @@ void SocketSource::hang_up(const std::string& why) {
   bytes_.clear();
 }
 
-bool SocketSource::parse_header(ByteSpan packet, Header& header, std::string& why) const {
+Outcome<SocketSource::Header> SocketSource::parse_header(ByteSpan packet) const {
   if (packet.size() != kHeaderBytes ||
       std::memcmp(packet.data(), kImageMagic.data(), kImageMagic.size()) != 0) {
-    why = "expected a header of 32 bytes that begins with ZPI1, got " +
-          std::to_string(packet.size()) + " bytes";
-    return false;
+    return failure("expected a header of 32 bytes that begins with ZPI1, got " +
+                   std::to_string(packet.size()) + " bytes");
   }
+  Header header;
   header.bytes = little_endian_at<std::uint32_t>(packet, 4);
   const auto width = little_endian_at<std::uint32_t>(packet, 8);
   const auto height = little_endian_at<std::uint32_t>(packet, 12);
@@ -98,15 +98,13 @@ bool SocketSource::parse_header(ByteSpan packet, Header& header, std::string& wh
   if (format > static_cast<std::uint8_t>(PixelFormat::kJpeg) ||
       clock > static_cast<std::uint8_t>(ImageClock::kRealtime) ||
       little_endian_at<std::uint16_t>(packet, 22) != 0) {
-    why = "format " + std::to_string(format) + ", clock " + std::to_string(clock) +
-          "; expected format 0 to 4, clock 0 to 2 and zeros behind them";
-    return false;
+    return failure("format " + std::to_string(format) + ", clock " + std::to_string(clock) +
+                   "; expected format 0 to 4, clock 0 to 2 and zeros behind them");
   }
   if (width != static_cast<std::uint32_t>(width_) ||
       height != static_cast<std::uint32_t>(height_)) {
-    why = "an image of " + size_text(width, height) + "; the calibration is of " +
-          size_text(width_, height_);
-    return false;
+    return failure("an image of " + size_text(width, height) + "; the calibration is of " +
+                   size_text(width_, height_));
   }
   header.image.format = static_cast<PixelFormat>(format);
   header.image.width = width_;
@@ -118,38 +116,37 @@ bool SocketSource::parse_header(ByteSpan packet, Header& header, std::string& wh
   const bool jpeg = header.image.format == PixelFormat::kJpeg;
   if (header.bytes == 0 || header.bytes > most_bytes_ ||
       (!jpeg && (header.image.row_bytes < least || raw != header.bytes))) {
-    why = std::to_string(header.bytes) + " bytes with rows of " +
-          std::to_string(header.image.row_bytes) + "; expected " +
-          (jpeg ? "1 to " + std::to_string(most_bytes_)
-                : "rows of " + std::to_string(least) + " or more, and height times that, at most " +
-                      std::to_string(most_bytes_));
-    return false;
+    return failure(std::to_string(header.bytes) + " bytes with rows of " +
+                   std::to_string(header.image.row_bytes) + "; expected " +
+                   (jpeg ? "1 to " + std::to_string(most_bytes_)
+                         : "rows of " + std::to_string(least) +
+                               " or more, and height times that, at most " +
+                               std::to_string(most_bytes_)));
   }
-  return true;
+  return header;
 }
 
-// A packet of `got` bytes came; false: the writer breaks the protocol.
-bool SocketSource::fill(std::size_t got, std::string& why) {
+// A packet of `got` bytes came. Fails when the writer breaks the protocol.
+Outcome<void> SocketSource::fill(std::size_t got) {
   const ByteSpan packet = std::span(piece_).first(got);
   last_piece_ns_ = monotonic_ns();
   if (!arriving_) {
-    Header header;
-    if (!parse_header(packet, header, why)) return false;
-    arriving_ = header;
+    const Outcome<Header> header = parse_header(packet);
+    if (!header) return header.error();
+    arriving_ = *header;
     bytes_.clear();
-    bytes_.reserve(header.bytes);
-    return true;
+    bytes_.reserve(header->bytes);
+    return {};
   }
   if (got > arriving_->bytes - bytes_.size()) {
-    why = "more bytes than the image's header says";
-    return false;
+    return failure("more bytes than the image's header says");
   }
   bytes_.insert(bytes_.end(), packet.begin(), packet.end());
   if (bytes_.size() == arriving_->bytes) {
     std::swap(bytes_, whole_);
     complete_ = std::exchange(arriving_, std::nullopt);
   }
-  return true;
+  return {};
 }
 
 ImageSource::News SocketSource::next(std::int64_t until_ns, GreyImage& into) {
@@ -170,11 +167,12 @@ ImageSource::News SocketSource::next(std::int64_t until_ns, GreyImage& into) {
         }
         break;
       }
-      std::string why;
-      if (got->cut) why = "a packet of more than 65536 bytes";
-      if (got->cut || !fill(got->bytes, why)) {
-        hang_up(why);
-        return {State::kRefused, name_ + ": the writer was disconnected: " + why};
+      const Outcome<void> filled =
+          got->cut ? failure("a packet of more than 65536 bytes") : fill(got->bytes);
+      if (!filled) {
+        hang_up(filled.error().message);
+        return {State::kRefused,
+                name_ + ": the writer was disconnected: " + filled.error().message};
       }
       taken += complete_ && !arriving_ ? 1 : 0;
       if (monotonic_ns() >= until_ns) break;

@@ -42,8 +42,8 @@ class SocketSource final : public ImageSource {
 
   SocketSource(std::string name, LocalListener listener, int width, int height);
   void accept();
-  bool fill(std::size_t got, std::string& why);
-  bool parse_header(ByteSpan packet, Header& header, std::string& why) const;
+  Outcome<void> fill(std::size_t got);
+  Outcome<Header> parse_header(ByteSpan packet) const;
   void hang_up(const std::string& why);
 
   const std::string name_;

@@ -18,7 +18,7 @@
 #include "runtime/localize/explain/query_drawing.hpp"
 #include "runtime/localize/explain/reason_text.hpp"
 #include "runtime/localize/query/localizer.hpp"
-#include "runtime/localize/query/map_folder.hpp"
+#include "runtime/localize/query/stored_map.hpp"
 #include "runtime/odometry/se2.hpp"
 #include "runtime/report/report.hpp"
 
@@ -110,7 +110,7 @@ std::string text_of(const Answer& answer) {
 }
 
 report::Report report_of(const QueryArguments& arguments, const Answer& answer,
-                         const GreyImage& image, const MapFolder& map,
+                         const GreyImage& image, const StoredMap& map,
                          const std::vector<MapFeatures>& features) {
   const QueryResult& r = answer.result;
   report::Report out;
@@ -138,7 +138,7 @@ report::Report report_of(const QueryArguments& arguments, const Answer& answer,
 }
 
 // The zones that are looked at: one, or all.
-Outcome<std::vector<MapFeatures>> features_of(const MapFolder& map, const std::string& zone) {
+Outcome<std::vector<MapFeatures>> features_of(const StoredMap& map, const std::string& zone) {
   std::vector<MapFeatures> out;
   if (!zone.empty() && map.catalog.find(zone) == kNoZone) {
     return failure(map.catalog.folder + ": has no zone '" + zone + "'; zonepack inspect " +
@@ -167,7 +167,7 @@ Outcome<void> query(const QueryArguments& arguments) {
                    " is of " + std::to_string(camera->width) + "x" +
                    std::to_string(camera->height) + "; give the calibration of this camera");
   }
-  const auto map = open_map_folder(arguments.map);
+  const auto map = open_stored_map(arguments.map);
   if (!map) return map.error();
   const auto features = features_of(*map, arguments.place.zone);
   if (!features) return features.error();

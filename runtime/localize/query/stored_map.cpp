@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/localize/query/map_folder.hpp"
+#include "runtime/localize/query/stored_map.hpp"
 
 #include <utility>
 
@@ -9,7 +9,7 @@
 
 namespace zonepack::localize {
 
-Outcome<MapFolder> open_map_folder(const std::string& folder) {
+Outcome<StoredMap> open_stored_map(const std::string& folder) {
   constexpr PayloadMask kWanted = kCoreOnly | mask_of(fb::PayloadKind::Features);
   std::string why;
   Result<Catalog> catalog = Catalog::open(folder, kWanted, Catalog::kNoMost, &why);
@@ -21,7 +21,7 @@ Outcome<MapFolder> open_map_folder(const std::string& folder) {
   }
   auto detector = parse_detector(catalog->detector, folder);
   if (!detector) return std::move(detector).error();
-  return MapFolder{std::move(*catalog), *detector};
+  return StoredMap{std::move(*catalog), *detector};
 }
 
 Outcome<DecodedPack> decode_zone(const Catalog& catalog, const CatalogZone& zone,
@@ -39,7 +39,7 @@ Outcome<DecodedPack> decode_zone(const Catalog& catalog, const CatalogZone& zone
   return std::move(decoded).value();
 }
 
-Outcome<std::vector<MapFeatures>> read_zone_features(const MapFolder& map, ZoneId zone) {
+Outcome<std::vector<MapFeatures>> read_zone_features(const StoredMap& map, ZoneId zone) {
   const auto decoded = decode_zone(map.catalog, map.catalog.zones.at(zone),
                                    kCoreOnly | mask_of(fb::PayloadKind::Features));
   if (!decoded) return decoded.error();

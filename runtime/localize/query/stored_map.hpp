@@ -13,17 +13,17 @@
 namespace zonepack::localize {
 
 // What a map's manifest says: its zones, and what found its features.
-struct MapFolder {
+struct StoredMap {
   Catalog catalog;
   DetectorSettings detector;
 };
-Outcome<MapFolder> open_map_folder(const std::string& folder);
+Outcome<StoredMap> open_stored_map(const std::string& folder);
 
 // One zone's pack, read and decoded as far as wanted; errors name the file and the zone.
 Outcome<DecodedPack> decode_zone(const Catalog& catalog, const CatalogZone& zone,
                                  PayloadMask wanted);
 
 // The features of one zone, read from its pack.
-Outcome<std::vector<MapFeatures>> read_zone_features(const MapFolder& map, ZoneId zone);
+Outcome<std::vector<MapFeatures>> read_zone_features(const StoredMap& map, ZoneId zone);
 
 }  // namespace zonepack::localize

@@ -30,7 +30,7 @@ struct Checked {
 // How far to go with what one run says. Matches are found with the camera as it is thought to be,
 // which keeps those that agree with it: a run shows only a part of what is wrong, down to two
 // fifths. The part follows from how much of the last step the next run misses (the secant method).
-class Approach {
+class TraitSearch {
  public:
   double step(double shown) {
     double part = 1;
@@ -58,7 +58,7 @@ Outcome<Checked> check(const LoopArguments& arguments) {
   if (!camera) return camera.error();
   Checked out;
   CameraTraits total{}, sigmas{};
-  std::array<Approach, kCameraTraits> approach;
+  std::array<TraitSearch, kCameraTraits> approach;
   std::vector<CameraTrait> wrong;
   bool settled = false;
   while (!settled && out.runs < kMostRuns) {

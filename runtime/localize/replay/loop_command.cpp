@@ -18,7 +18,7 @@
 #include "runtime/localize/check/calibration_text.hpp"
 #include "runtime/localize/check/calibration_watch.hpp"
 #include "runtime/localize/query/localizer.hpp"
-#include "runtime/localize/query/map_folder.hpp"
+#include "runtime/localize/query/stored_map.hpp"
 #include "runtime/localize/replay/beside_run.hpp"
 #include "runtime/localize/replay/camera_loop.hpp"
 #include "runtime/localize/replay/fixes_file.hpp"
@@ -64,7 +64,7 @@ class Progress {
 // Everything read before the run.
 struct LoopInputs {
   RunInputs run;
-  MapFolder map;
+  StoredMap map;
   CameraModel camera;
   std::vector<LoopImage> images;
   std::vector<BaselineRow> baseline;
@@ -96,7 +96,7 @@ Outcome<LoopInputs> read_inputs(const LoopArguments& arguments) {
   auto listed = read_image_list(arguments.images);
   if (!listed) return listed.error();
   if (const auto right = check_size(*listed, arguments, *camera); !right) return right.error();
-  auto map = open_map_folder(run->catalog.folder);
+  auto map = open_stored_map(run->catalog.folder);
   if (!map) return map.error();
   std::vector<BaselineRow> baseline;
   if (!arguments.baseline.empty()) {

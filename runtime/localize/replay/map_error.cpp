@@ -21,7 +21,7 @@ std::optional<Pose2> in_plane(const std::optional<RigidTransform>& m) {
 
 }  // namespace
 
-Outcome<MapError> MapError::read(const MapFolder& map) {
+Outcome<MapError> MapError::read(const StoredMap& map) {
   MapError error;
   for (const CatalogZone& zone : map.catalog.zones) {
     const auto decoded = decode_zone(map.catalog, zone, kCoreOnly);

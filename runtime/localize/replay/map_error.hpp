@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "platform/base/failure.hpp"
-#include "runtime/localize/query/map_folder.hpp"
+#include "runtime/localize/query/stored_map.hpp"
 #include "runtime/odometry/pose.hpp"
 
 namespace zonepack::localize {
@@ -19,7 +19,7 @@ namespace zonepack::localize {
 class MapError {
  public:
   // Reads the signatures' poses. Without a true pose in any of them, empty().
-  static Outcome<MapError> read(const MapFolder& map);
+  static Outcome<MapError> read(const StoredMap& map);
 
   bool empty() const noexcept { return places_.empty(); }
 

@@ -46,9 +46,9 @@ std::string socket_to_use(const RunArguments& arguments) {
   return socket_to_ask();
 }
 
-class Run {
+class CameraRun {
  public:
-  Run(const RunArguments& arguments, const CameraModel& camera)
+  CameraRun(const RunArguments& arguments, const CameraModel& camera)
       : arguments_(arguments),
         camera_(camera),
         socket_(socket_to_use(arguments)),
@@ -96,7 +96,7 @@ class Run {
 };
 
 // Connects, and makes a localizer for the features of zoned's map.
-Outcome<void> Run::connect() {
+Outcome<void> CameraRun::connect() {
   auto link = ZonedLink::open(socket_);
   if (!link) return link.error();
   const std::optional<std::string> detector = link->detector();
@@ -123,7 +123,7 @@ Outcome<void> Run::connect() {
   return {};
 }
 
-Outcome<void> Run::begin() {
+Outcome<void> CameraRun::begin() {
   if (auto connected = connect(); !connected) return connected;
   auto source = open_camera(arguments_.camera, camera_, [this] { return run_ns(); });
   if (!source) return source.error();
@@ -135,7 +135,7 @@ Outcome<void> Run::begin() {
   return {};
 }
 
-void Run::lose_zoned(const Error& error) {
+void CameraRun::lose_zoned(const Error& error) {
   if (error.code == ErrorCode::kBusy) return;  // later
   say(socket_ + ": zoned is gone; waiting for the next");
   search_.reset();
@@ -143,7 +143,7 @@ void Run::lose_zoned(const Error& error) {
   next_try_ns_ = monotonic_ns() + kReconnect_ns;
 }
 
-void Run::try_again() {
+void CameraRun::try_again() {
   if (link_ && link_->epoch() != epoch_) {  // another map, perhaps another detector
     search_.reset();
     link_.reset();
@@ -158,7 +158,7 @@ void Run::try_again() {
   }
 }
 
-std::optional<RobotState> Run::ask_state() {
+std::optional<RobotState> CameraRun::ask_state() {
   if (!link_) return std::nullopt;
   const auto state = link_->state();
   if (!state) {
@@ -171,14 +171,14 @@ std::optional<RobotState> Run::ask_state() {
 }
 
 // The run's clock, between zoned's answers as fast as it is said to be.
-std::int64_t Run::run_ns() {
+std::int64_t CameraRun::run_ns() {
   if (monotonic_ns() - state_.received_ns > kFreshState_ns) ask_state();
   const double passed_ns =
       static_cast<double>(monotonic_ns() - state_.received_ns) * arguments_.camera.speed;
   return state_.run_ns + static_cast<std::int64_t>(passed_ns);
 }
 
-void Run::refuse(const std::string& why) {
+void CameraRun::refuse(const std::string& why) {
   counters_.count_refused();
   // The numbers in it differ from image to image.
   std::string kind;
@@ -188,7 +188,7 @@ void Run::refuse(const std::string& why) {
   complaints_.add(kind, why + "; nothing is sent for it", monotonic_ns());
 }
 
-void Run::look(const GreyImage& image) {
+void CameraRun::look(const GreyImage& image) {
   const ImageClock clock = source_->clock();
   const std::int64_t offset_ns = clock_offset_ns();
   const auto clock_now = [&] {
@@ -229,7 +229,7 @@ void Run::look(const GreyImage& image) {
 }
 
 // False: this zoned knows no search, or there are no wheels to join views by.
-bool Run::begin_search(const RobotState& state) {
+bool CameraRun::begin_search(const RobotState& state) {
   if (!search_ || !state.wheels) return false;
   const auto begun = search_->begin(state);
   if (begun) return search_->searching();
@@ -238,7 +238,7 @@ bool Run::begin_search(const RobotState& state) {
 }
 
 // A step of a search; the fixes that it ends with go to zoned.
-void Run::search() {
+void CameraRun::search() {
   if (!search_ || !search_->searching()) return;
   const auto state = ask_state();
   if (!state || !search_) return;
@@ -262,7 +262,7 @@ void Run::search() {
 }
 
 // Says once that something seems wrong with the calibration.
-void Run::mind_calibration(const QueryResult& fix) {
+void CameraRun::mind_calibration(const QueryResult& fix) {
   constexpr std::size_t kEvery = 16;  // fixes
   calibration_.add(camera_, fix);
   if (said_calibration_ || calibration_.fixes() % kEvery != 0) return;
@@ -273,7 +273,7 @@ void Run::mind_calibration(const QueryResult& fix) {
   }
 }
 
-void Run::give(const GreyImage& image, const QueryResult& result) {
+void CameraRun::give(const GreyImage& image, const QueryResult& result) {
   if (const auto given = link_->give(result, image.stamp_ns, source_->clock()); !given) {
     counters_.count_not_taken();
     if (given.error().code == ErrorCode::kIo || given.error().code == ErrorCode::kBadValue) {
@@ -291,7 +291,7 @@ void Run::give(const GreyImage& image, const QueryResult& result) {
   }
 }
 
-void Run::mind_silence(bool came) {
+void CameraRun::mind_silence(bool came) {
   const std::int64_t now_ns = monotonic_ns();
   if (came) {
     last_image_ns_ = now_ns;
@@ -303,7 +303,7 @@ void Run::mind_silence(bool came) {
   say(arguments_.camera_text + ": no image for 2 s; nothing is sent until one comes");
 }
 
-void Run::report() {
+void CameraRun::report() {
   const std::int64_t now_ns = monotonic_ns();
   if (!link_ || now_ns < next_report_ns_) return;
   next_report_ns_ = now_ns + kReport_ns;
@@ -318,7 +318,7 @@ void Run::report() {
   lose_zoned(reported.error());
 }
 
-Outcome<void> Run::go() {
+Outcome<void> CameraRun::go() {
   using State = ImageSource::State;
   const std::int64_t end_ns =
       arguments_.seconds ? monotonic_ns() + static_cast<std::int64_t>(*arguments_.seconds * 1e9)
@@ -352,7 +352,7 @@ int run_localizer(const RunArguments& arguments) {
   if (const auto possible = check_outputs({{"--json", arguments.json, true}}); !possible) {
     return report_failure(kZoneloc, possible.error());
   }
-  Run run(arguments, *camera);
+  CameraRun run(arguments, *camera);
   if (const auto begun = run.begin(); !begun) return report_failure(kZoneloc, begun.error());
   Failures all;
   all.add(run.go());

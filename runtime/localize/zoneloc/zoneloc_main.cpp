@@ -9,6 +9,7 @@
 #include "runtime/localize/zoneloc/add_query.hpp"
 #include "runtime/localize/zoneloc/add_replay.hpp"
 #include "runtime/localize/zoneloc/add_run.hpp"
+#include "runtime/pack_format/file/pack_file.hpp"
 #include "runtime/protocol/messages.hpp"
 
 // An exception that comes here is a bug: it stops the process.
@@ -19,8 +20,10 @@ int main(int argc, char** argv) {
       "Finds the robot's pose in a camera's images, among the map's zones in memory.\n"
       "Exit codes: 0 done, 1 the input or the world is bad, 2 usage.",
       "zoneloc");
-  app.set_version_flag("--version", zonepack::version_line(
-                                        "zoneloc", {{"protocol", zonepack::kProtocolVersion, {}}}));
+  app.set_version_flag("--version",
+                       zonepack::version_line(
+                           "zoneloc", {{"pack format", zonepack::kPackMajor, zonepack::kPackMinor},
+                                       {"protocol", zonepack::kProtocolVersion, {}}}));
   app.require_subcommand(1);
   std::function<int()> command;
   zonepack::localize::RunArguments run;

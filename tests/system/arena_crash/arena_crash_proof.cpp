@@ -91,8 +91,9 @@ bool told(const char* what, bool good, const MemoryGroup& group) {
 bool with_manager(const TemporaryFolder& folder) {
   const auto group = MemoryGroup::make("zonepack-managed", kLimit);
   ServiceManager manager(folder / "notify");
-  ArenaMemory::Source source{folder / "lock-1", std::chrono::milliseconds(0), &manager.notifier,
-                             nullptr};
+  ArenaMemory::Source source{.lock_path = folder / "lock-1",
+                             .wait = std::chrono::milliseconds(0),
+                             .manager = &manager.notifier};
   const Crashed crashed = crash(*group, source);
   std::vector<HandedFile> handed = manager.hand_over();
   source.handed = &handed;
@@ -105,8 +106,8 @@ bool with_manager(const TemporaryFolder& folder) {
 
 bool without_manager(const TemporaryFolder& folder) {
   const auto group = MemoryGroup::make("zonepack-alone", kLimit);
-  const ArenaMemory::Source source{folder / "lock-2", std::chrono::milliseconds(0), nullptr,
-                                   nullptr};
+  const ArenaMemory::Source source{.lock_path = folder / "lock-2",
+                                   .wait = std::chrono::milliseconds(0)};
   const Crashed crashed = crash(*group, source);
   const int refused = restart(*group, source);
   end(crashed.reader);
@@ -119,8 +120,8 @@ bool without_manager(const TemporaryFolder& folder) {
 
 bool the_limit_would_tell(const TemporaryFolder& folder) {
   const auto group = MemoryGroup::make("zonepack-careless", kLimit);
-  const ArenaMemory::Source source{folder / "lock-3", std::chrono::milliseconds(0), nullptr,
-                                   nullptr};
+  const ArenaMemory::Source source{.lock_path = folder / "lock-3",
+                                   .wait = std::chrono::milliseconds(0)};
   const Crashed crashed = crash(*group, source);
   ArenaMemory::Source another = source;
   another.lock_path = folder / "lock-4";

@@ -59,7 +59,7 @@ python3 "$source/tests/system/serve/dashboard_test.py" "$source/config/grafana.j
 check 'pin' 0 '' "$zonectl" pin b
 check 'pinned' 0 '^b +resident +wanted pinned ' "$zonectl" zones
 check 'unpin' 0 '' "$zonectl" unpin b
-check 'no room' 1 '^zonectl: no room beside the pins' "$zonectl" pin c
+check 'no room' 1 '^zonectl: no room besides the pins' "$zonectl" pin c
 check 'no such zone' 1 '^zonectl: not found: no zone "x" in this map' "$zonectl" pin x
 check 'freeze' 0 '' "$zonectl" freeze
 check 'unfreeze' 0 '' "$zonectl" unfreeze

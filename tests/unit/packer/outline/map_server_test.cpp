@@ -13,14 +13,14 @@
 namespace zonepack::packer {
 namespace {
 
-class ServedMapTest : public testing::Test {
+class GridFileTest : public testing::Test {
  protected:
   std::string write(const std::string& name, const std::string& content) {
     const std::string path = (folder_.path() / name).string();
     std::ofstream(path, std::ios::binary) << content;
     return path;
   }
-  ServedMap read(const std::string& yaml) { return read_served_map(write("map.yaml", yaml)); }
+  GridFile read(const std::string& yaml) { return read_grid_file(write("map.yaml", yaml)); }
   std::string refusal(const std::string& yaml) {
     try {
       read(yaml);
@@ -34,12 +34,12 @@ class ServedMapTest : public testing::Test {
   const std::string base_ = "image: map.pgm\nresolution: 0.5\norigin: [1, -2, 0.25]\n";
 };
 
-TEST_F(ServedMapTest, ReadsWhiteAsFreeBlackAsOccupiedAndGreyAsUnknown) {
+TEST_F(GridFileTest, ReadsWhiteAsFreeBlackAsOccupiedAndGreyAsUnknown) {
   // Upper row: 0, 205, 254; lower row: 255, 100, 60. Occupied is (255 - grey) / 255: 100 gives
   // 0.61, 205 gives 0.196, 60 gives 0.76.
   write("map.pgm", std::string("P5\n# made by hand\n3 2\n255\n") + '\x00' + '\xcd' + '\xfe' +
                        '\xff' + '\x64' + '\x3c');
-  const ServedMap map = read(base_ + "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  const GridFile map = read(base_ + "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
   EXPECT_EQ(map.image.width, 3u);
   EXPECT_EQ(map.image.height, 2u);
   EXPECT_EQ(map.image.resolution_m, 0.5);
@@ -50,12 +50,12 @@ TEST_F(ServedMapTest, ReadsWhiteAsFreeBlackAsOccupiedAndGreyAsUnknown) {
                                                 Cell::kOccupied, Cell::kUnknown, Cell::kFree}));
 }
 
-TEST_F(ServedMapTest, ReadsNumbersAsText) {
+TEST_F(GridFileTest, ReadsNumbersAsText) {
   write("map.pgm", "P2\n2 1\n15\n0 15\n");
   EXPECT_EQ(read(base_).image.cells, (std::vector<Cell>{Cell::kOccupied, Cell::kFree}));
 }
 
-TEST_F(ServedMapTest, ReadsNegatedAndRawMaps) {
+TEST_F(GridFileTest, ReadsNegatedAndRawMaps) {
   write("map.pgm", std::string("P5 3 1 255\n") + '\x00' + '\x64' + '\xff');
   EXPECT_EQ(read(base_ + "negate: 1\n").image.cells,
             (std::vector<Cell>{Cell::kFree, Cell::kUnknown, Cell::kOccupied}));
@@ -64,18 +64,18 @@ TEST_F(ServedMapTest, ReadsNegatedAndRawMaps) {
             (std::vector<Cell>{Cell::kFree, Cell::kOccupied, Cell::kUnknown}));
 }
 
-TEST_F(ServedMapTest, ReadsPngs) {
+TEST_F(GridFileTest, ReadsPngs) {
   // The palette: white, black.
   const std::vector<std::uint8_t> pixels{0, 1, 1, 0};
   write("map.png",
         to_png(pixels, 2,
                {PngColor{255, 255, 255, 255}, PngColor{0, 0, 0, 255}, PngColor{}, PngColor{}}));
-  const ServedMap map = read("image: map.png\nresolution: 0.05\norigin: [0, 0, 0]\n");
+  const GridFile map = read("image: map.png\nresolution: 0.05\norigin: [0, 0, 0]\n");
   EXPECT_EQ(map.image.cells,
             (std::vector<Cell>{Cell::kOccupied, Cell::kFree, Cell::kFree, Cell::kOccupied}));
 }
 
-TEST_F(ServedMapTest, NamesTheKeyThatIsWrong) {
+TEST_F(GridFileTest, NamesTheKeyThatIsWrong) {
   write("map.pgm", "P2\n2 1\n15\n0 15\n");
   EXPECT_THAT(refusal("resolution: 0.05\norigin: [0, 0, 0]\n"),
               testing::HasSubstr("'image' is missing"));
@@ -96,7 +96,7 @@ TEST_F(ServedMapTest, NamesTheKeyThatIsWrong) {
   EXPECT_THAT(refusal(std::string(70000, 'a')), testing::HasSubstr("longer than 65536 bytes"));
 }
 
-TEST_F(ServedMapTest, NamesTheImageThatIsWrong) {
+TEST_F(GridFileTest, NamesTheImageThatIsWrong) {
   EXPECT_THAT(refusal(base_), testing::HasSubstr("map.pgm: cannot read the image"));
   write("map.pgm", "");
   EXPECT_THAT(refusal(base_), testing::HasSubstr("is empty"));
@@ -124,7 +124,7 @@ TEST_F(ServedMapTest, NamesTheImageThatIsWrong) {
   EXPECT_THAT(refusal(base_), testing::HasSubstr("30000 x 30000 pixels, at most 67108864"));
 }
 
-TEST_F(ServedMapTest, ReadsNothingBehindAHeaderThatClaimsTooMuch) {
+TEST_F(GridFileTest, ReadsNothingBehindAHeaderThatClaimsTooMuch) {
   // 900 MB, all of it a hole of the file.
   const std::string path = write("map.pgm", "P5\n30000 30000\n255\n");
   std::filesystem::resize_file(path, 900'000'000);
@@ -135,7 +135,7 @@ TEST_F(ServedMapTest, ReadsNothingBehindAHeaderThatClaimsTooMuch) {
   EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 4096);  // KiB
 }
 
-TEST_F(ServedMapTest, ReadsLongNumbersAndWhatFollowsThem) {
+TEST_F(GridFileTest, ReadsLongNumbersAndWhatFollowsThem) {
   write("map.pgm", "P2\n2 2\n65535\n65535 65535\n00000 00000\n\n");
   EXPECT_EQ(read(base_).image.cells,
             (std::vector<Cell>{Cell::kOccupied, Cell::kOccupied, Cell::kFree, Cell::kFree}));

@@ -300,7 +300,8 @@ TEST(WheelHints, SpeedsThatNoRobotHasAskForAUnitOrAGear) {
 }
 
 TEST(WheelHints, AreWrittenForPeopleAndForPrograms) {
-  const WheelHint hint{"gear", "a \"gear\" is missing", {"odometry:", "  gear: 30"}};
+  const WheelHint hint{
+      .kind = "gear", .text = "a \"gear\" is missing", .yaml = {"odometry:", "  gear: 30"}};
   EXPECT_EQ(hint_text(hint), "hint: a \"gear\" is missing; write\n    odometry:\n      gear: 30\n");
   EXPECT_EQ(hints_json({hint}),
             "[{\"kind\": \"gear\", \"text\": \"a \\\"gear\\\" is missing\", \"yaml\": "

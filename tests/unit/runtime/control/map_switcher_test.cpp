@@ -39,7 +39,8 @@ struct World {
   const std::vector<float> load_s = std::vector<float>(3, 0.12f);
   Residency memory;
   Cycle cycle;
-  MapInUse in_use{catalog, graph, needs, memory, cycle};
+  MapInUse in_use{
+      .catalog = catalog, .graph = graph, .needs = needs, .memory = memory, .cycle = cycle};
 };
 
 class MapChange : public testing::Test, public EventSink, public ZoneDirectory, public ZoneFiller {
@@ -165,7 +166,11 @@ TEST_F(MapChange, KeepsTheOldMapWhenTheZoneCannotBeLoaded) {
 TEST_F(MapChange, KeepsTheOldMapWhenBothDoNotFit) {
   World large{loader, *this, *this, 100 + 900};
   const std::vector<ZoneNeed> needs(3, ZoneNeed{.slots = 5, .signatures = 10});
-  MapInUse in_use{large.catalog, large.graph, needs, large.memory, large.cycle};
+  MapInUse in_use{.catalog = large.catalog,
+                  .graph = large.graph,
+                  .needs = needs,
+                  .memory = large.memory,
+                  .cycle = large.cycle};
   stand_in_a();
   maps.offer(in_use);  // 100 + 400 + 100 + 500 > 1000
   stand(5);
@@ -175,7 +180,13 @@ TEST_F(MapChange, KeepsTheOldMapWhenBothDoNotFit) {
 
 TEST_F(MapChange, KeepsTheOldMapWhenThereAreNotEnoughSlotsHoweverLargeTheBudget) {
   World roomy{loader, *this, *this, 10'000};
-  MapInUse in_use{roomy.catalog, roomy.graph, roomy.needs, roomy.memory, roomy.cycle, 2, 7};
+  MapInUse in_use{.catalog = roomy.catalog,
+                  .graph = roomy.graph,
+                  .needs = roomy.needs,
+                  .memory = roomy.memory,
+                  .cycle = roomy.cycle,
+                  .number = 2,
+                  .slots = 7};
   stand_in_a();
   maps.offer(in_use);  // 4 of the old one and 4 of the new one
   stand(5);
@@ -185,7 +196,12 @@ TEST_F(MapChange, KeepsTheOldMapWhenThereAreNotEnoughSlotsHoweverLargeTheBudget)
 
 TEST_F(MapChange, KeepsTheOldMapWhenTheNewOneHasNoRoomForTheOldTables) {
   World small{loader, *this, *this, 100 + 400};
-  MapInUse in_use{small.catalog, small.graph, small.needs, small.memory, small.cycle, 2};
+  MapInUse in_use{.catalog = small.catalog,
+                  .graph = small.graph,
+                  .needs = small.needs,
+                  .memory = small.memory,
+                  .cycle = small.cycle,
+                  .number = 2};
   stand_in_a();
   maps.offer(in_use);
   stand(5);

@@ -30,8 +30,9 @@ TEST(EvictFarthest, IsBeladysRuleForZonesOfOneSize) {
   const auto zones = zones_of({{1, 1}, {1, 1}, {1, 1}});
   // Two fit. 0 1 load; 2 takes 1's place, which comes after 0; 0 stays; 1 takes 0's or 2's: 4
   // loads.
-  const LoadTotals totals = evict_farthest(one_by_one({0, 1, 2, 0, 1}), {zones, 2, 0});
-  EXPECT_EQ(totals, (LoadTotals{4, 4, 40}));
+  const LoadTotals totals =
+      evict_farthest(one_by_one({0, 1, 2, 0, 1}), {.zones = zones, .slots = 2});
+  EXPECT_EQ(totals, (LoadTotals{.loads = 4, .signatures = 4, .bytes = 40}));
 }
 
 TEST(EvictFarthest, KeepsAllZonesOfAStep) {
@@ -39,26 +40,37 @@ TEST(EvictFarthest, KeepsAllZonesOfAStep) {
   // 0 stays through both steps; 1 goes for 2 and comes back.
   RequestSteps requests;
   requests.steps = {{0, 1}, {0, 2}, {0, 1}};
-  EXPECT_EQ(evict_farthest(requests, {zones, 2, 0}), (LoadTotals{4, 4, 40}));
+  EXPECT_EQ(evict_farthest(requests, {.zones = zones, .slots = 2}),
+            (LoadTotals{.loads = 4, .signatures = 4, .bytes = 40}));
 }
 
 TEST(EvictFarthest, HoldsTheLimitOfSignatures) {
   const auto zones = zones_of({{1, 50}, {1, 60}});
   // Slots for both, signatures for one: each comes twice.
-  EXPECT_EQ(evict_farthest(one_by_one({0, 1, 0, 1}), {zones, 9, 100}), (LoadTotals{4, 220, 2200}));
-  EXPECT_EQ(evict_farthest(one_by_one({0, 1, 0, 1}), {zones, 9, 110}), (LoadTotals{2, 110, 1100}));
+  EXPECT_EQ(
+      evict_farthest(one_by_one({0, 1, 0, 1}), {.zones = zones, .slots = 9, .signatures = 100}),
+      (LoadTotals{.loads = 4, .signatures = 220, .bytes = 2200}));
+  EXPECT_EQ(
+      evict_farthest(one_by_one({0, 1, 0, 1}), {.zones = zones, .slots = 9, .signatures = 110}),
+      (LoadTotals{.loads = 2, .signatures = 110, .bytes = 1100}));
 }
 
 TEST(LeastLoads, IsAllNeedsWhereNothingCanBeKept) {
   const auto zones = zones_of({{2, 5}, {2, 7}});
-  EXPECT_EQ(least_loads(one_by_one({0, 1, 0, 1}), {zones, 2, 0}), (LoadTotals{4, 24, 240}));
-  EXPECT_EQ(least_loads(one_by_one({0, 1, 0, 1}), {zones, 4, 0}), (LoadTotals{2, 12, 120}));
+  EXPECT_EQ(least_loads(one_by_one({0, 1, 0, 1}), {.zones = zones, .slots = 2}),
+            (LoadTotals{.loads = 4, .signatures = 24, .bytes = 240}));
+  EXPECT_EQ(least_loads(one_by_one({0, 1, 0, 1}), {.zones = zones, .slots = 4}),
+            (LoadTotals{.loads = 2, .signatures = 12, .bytes = 120}));
 }
 
 TEST(LeastLoads, TakesTheLargerBoundOfTwoLimits) {
   const auto zones = zones_of({{1, 50}, {1, 60}});
-  EXPECT_EQ(least_loads(one_by_one({0, 1, 0, 1}), {zones, 9, 100}).loads, 4u);
-  EXPECT_EQ(least_loads(one_by_one({0, 1, 0, 1}), {zones, 9, 110}).loads, 2u);
+  EXPECT_EQ(
+      least_loads(one_by_one({0, 1, 0, 1}), {.zones = zones, .slots = 9, .signatures = 100}).loads,
+      4u);
+  EXPECT_EQ(
+      least_loads(one_by_one({0, 1, 0, 1}), {.zones = zones, .slots = 9, .signatures = 110}).loads,
+      2u);
 }
 
 TEST(MostGain, TakesIntervalsInPartAndRoundsDown) {

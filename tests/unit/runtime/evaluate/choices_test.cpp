@@ -140,11 +140,13 @@ TEST(ParseBudgets, TakesSizesOrAuto) {
   }
 }
 
-TEST(UnknownWord, IsTheFirstThatNoPolicyHas) {
-  std::vector<std::string> words;
-  EXPECT_EQ(unknown_word("lru,sieve", eviction_names(), words), std::nullopt);
-  EXPECT_EQ(words, (std::vector<std::string>{"lru", "sieve"}));
-  EXPECT_EQ(unknown_word("lru,belady,fifo", eviction_names(), words), "belady");
+TEST(ParseNames, TakesThoseThatAreKnownAndNamesTheFirstOther) {
+  const auto names = parse_names("lru,sieve", eviction_names());
+  ASSERT_TRUE(names);
+  EXPECT_EQ(*names, (std::vector<std::string>{"lru", "sieve"}));
+  const auto wrong = parse_names("lru,belady,fifo", eviction_names());
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().message.find("there is no 'belady'"), 0u) << wrong.error().message;
 }
 
 }  // namespace

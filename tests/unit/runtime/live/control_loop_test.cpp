@@ -90,18 +90,34 @@ class Loop : public testing::Test {
   const std::vector<ZoneNeed> needs = std::vector<ZoneNeed>(3, ZoneNeed{4, 10});
   const std::vector<LoadWork> work = std::vector<LoadWork>(3, LoadWork{100, 0});
   const std::vector<float> load_s = std::vector<float>(3, 0.12f);
-  Residency memory{3, {800, 0, 100, 0, {8, 20}, 1'000'000'000}};
+  Residency memory{3,
+                   {.budget = 800,
+                    .slot_bytes = 100,
+                    .largest_pair = {.slots = 8, .signatures = 20},
+                    .lease_ns = 1'000'000'000}};
   ModelledLoader loader{8, work, {1000, 1000}, nullptr};
   CountedClock clock;
   SpscQueue<LiveNote> queue{64};
   SpscQueue<Event> service{2};
   OverloadCounters overload;
   EventFanOut notes{queue, &service, overload};
-  Cycle cycle{testing_support::sample_robot(), {graph, needs, load_s, {}, memory, loader, notes}};
+  Cycle cycle{testing_support::sample_robot(),
+              {.graph = graph,
+               .needs = needs,
+               .load_s = load_s,
+               .pinned = {},
+               .memory = memory,
+               .loader = loader,
+               .events = notes}};
   Catalog catalog;
-  MapInUse in_use{catalog, graph, needs, memory, cycle};
+  MapInUse in_use{
+      .catalog = catalog, .graph = graph, .needs = needs, .memory = memory, .cycle = cycle};
   MapSwitcher maps{in_use, loader, nullptr};
-  Residency other_memory{3, {800, 0, 100, 0, {8, 20}, 1'000'000'000}};
+  Residency other_memory{3,
+                         {.budget = 800,
+                          .slot_bytes = 100,
+                          .largest_pair = {.slots = 8, .signatures = 20},
+                          .lease_ns = 1'000'000'000}};
   Cycle other_cycle{testing_support::sample_robot(),
                     {graph, needs, load_s, {}, other_memory, loader, notes, nullptr, 2}};
   MapInUse other_in_use{catalog, graph, needs, other_memory, other_cycle, 2};

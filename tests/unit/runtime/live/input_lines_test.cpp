@@ -18,7 +18,11 @@ class InputLinesTest : public testing::Test {
     chips.add_chip("robot", 8);
     chips.drive("robot", 0, true);
     const auto input = [](const char* line, bool low) {
-      return InputLine{"robot", line, low, GpioBias::kAsIs, 0};
+      return InputLine{.chip = "robot",
+                       .line = line,
+                       .active_low = low,
+                       .bias = GpioBias::kAsIs,
+                       .debounce_s = 0};
     };
     gpio.dock.emplace().input = input("0", true);
     gpio.hold = input("1", false);

@@ -17,9 +17,9 @@ class LineRequests : public testing::Test {
  protected:
   LineRequests() {
     chips.add_chip("robot", 8);
-    gpio.map_ready = OutputLine{"robot", "0"};
-    gpio.fault = OutputLine{"robot", "1", true};
-    gpio.hold = InputLine{"robot", "2"};
+    gpio.map_ready = OutputLine{.chip = "robot", .line = "0"};
+    gpio.fault = OutputLine{.chip = "robot", .line = "1", .active_low = true};
+    gpio.hold = InputLine{.chip = "robot", .line = "2"};
   }
   SimGpio chips;
   GpioSettings gpio;

@@ -22,9 +22,9 @@ class OutputLinesTest : public testing::Test {
  protected:
   OutputLinesTest() {
     chips.add_chip("robot", 4);
-    gpio.map_ready = OutputLine{"robot", "0"};
-    gpio.fault = OutputLine{"robot", "1", true};
-    gpio.heartbeat = OutputLine{"robot", "2"};
+    gpio.map_ready = OutputLine{.chip = "robot", .line = "0"};
+    gpio.fault = OutputLine{.chip = "robot", .line = "1", .active_low = true};
+    gpio.heartbeat = OutputLine{.chip = "robot", .line = "2"};
     status.state.odometry_stale = false;
     status.state.pose.trusted = true;
     status.state.zone = 3;
@@ -136,7 +136,7 @@ TEST_F(OutputLinesTest, AreSafeAgainWhenStoppedAndStayThere) {
 
 TEST_F(OutputLinesTest, ALineThatFailsStopsTheHeartbeatAndIsTriedAgain) {
   chips.add_chip("far", 1);
-  gpio.map_ready = OutputLine{"far", "0"};
+  gpio.map_ready = OutputLine{.chip = "far", .line = "0"};
   opened();
   for (int i = 0; i < 20; ++i) cycle(true);
   const std::uint64_t before = beats();
@@ -194,7 +194,7 @@ TEST_F(OutputLinesTest, MeasureFromALoadThatMapReadyWaitedForToItsLine) {
 
 TEST_F(OutputLinesTest, MapReadyRisesOnlyAfterTheFaultThatIsOver) {
   chips.add_chip("slow", 1);
-  gpio.fault = OutputLine{"slow", "0", true};
+  gpio.fault = OutputLine{.chip = "slow", .line = "0", .active_low = true};
   opened();
   cycle(false);
   chips.hang("slow", true);

@@ -22,7 +22,7 @@ using std::chrono::milliseconds;
 class ArenaMemoryOf : public testing::Test {
  protected:
   test_support::TemporaryFolder folder;
-  ArenaMemory::Source source{folder / "lock", milliseconds(40), nullptr, nullptr};
+  ArenaMemory::Source source{.lock_path = folder / "lock", .wait = milliseconds(40)};
   static constexpr ByteCount kBytes = 16 * kKiB;
 
   // A process that maps the memory, as a reader does.

@@ -223,7 +223,7 @@ TEST(ByteRing, KeepsMessagesWholeAndInOrderAcrossItsEndAndRefusesWhatDoesNotFit)
 }
 
 TEST(InputRecord, CarriesTheMapOnOfferOrWhyThereIsNone) {
-  for (const MapOffer offer : {MapOffer{7, ErrorCode::kOk}, MapOffer{0, ErrorCode::kTruncated}}) {
+  for (const MapOffer offer : {MapOffer{.map = 7}, MapOffer{.fault = ErrorCode::kTruncated}}) {
     CycleInput input;
     input.offer = offer;
     std::vector<std::byte> bytes(64);

@@ -51,7 +51,7 @@ RunSummary summary() {
 
 TEST(SummaryJson, HasTheKeysThatScriptsRelyOn) {
   RunSummary s = summary();
-  s.pose_error_m = PoseError{0.1, 0.2, 0.3};
+  s.pose_error_m = PoseError{.p50 = 0.1, .p95 = 0.2, .max = 0.3};
   const auto json = nlohmann::ordered_json::parse(summary_json(s));
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);

@@ -56,7 +56,7 @@ RunSummary summary() {
   s.signatures_unloaded = 10;
   s.cycles = 1500;
   s.zone_absent_s = 2;
-  s.pose_error_m = PoseError{0.5, 0.5, 0.5};
+  s.pose_error_m = PoseError{.p50 = 0.5, .p95 = 0.5, .max = 0.5};
   s.event_log_hash = "c0ffee";
   return s;
 }

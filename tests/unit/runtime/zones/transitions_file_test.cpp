@@ -39,9 +39,8 @@ class TransitionsFile : public testing::Test {
 
 TEST_F(TransitionsFile, IsReadAsItWasWritten) {
   const auto bytes = write_transitions(learned());
-  std::string why;
-  const auto read = read_transitions(bytes, &why);
-  ASSERT_TRUE(read) << why;
+  const auto read = read_transitions(bytes);
+  ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->map_lineage[3], 7);
   EXPECT_EQ(read->map_version[5], 9);
   EXPECT_EQ(read->zones, (std::vector<std::string>{"a", "b", "c"}));
@@ -72,10 +71,9 @@ TEST_F(TransitionsFile, FitsAMapWhoseZonesKeptTheirNames) {
 TEST_F(TransitionsFile, IsRefusedWhenItIsCutAnywhere) {
   const auto bytes = write_transitions(learned());
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    std::string why;
-    const auto read = read_transitions(ByteSpan(bytes).first(size), &why);
+    const auto read = read_transitions(ByteSpan(bytes).first(size));
     EXPECT_FALSE(read) << size;
-    EXPECT_FALSE(why.empty()) << size;
+    EXPECT_FALSE(read.error().message.empty()) << size;
   }
 }
 
@@ -93,8 +91,8 @@ TEST_F(TransitionsFile, IsRefusedWhenItsNumbersAreForged) {
   const auto forged = [&](auto change) {
     LearnedTransitions bad = learned();
     change(bad);
-    std::string why;
-    return read_transitions(write_transitions(bad), &why) ? std::string("read") : why;
+    const auto read = read_transitions(write_transitions(bad));
+    return read ? std::string("read") : read.error().message;
   };
   using L = LearnedTransitions;
   EXPECT_NE(forged([](L& l) { l.contexts[0].now = 3; }).find("context 0"), std::string::npos);

@@ -179,7 +179,7 @@ TEST_F(CtlText, TheViewFitsIntoAnyTerminal) {
     zones.push_back(zone);
   }
   view.set_zones(zones);
-  std::vector<FloorPlan::Outline> outlines;  // 20 by 15 rooms of 5 m
+  std::vector<TextPlan::Outline> outlines;  // 20 by 15 rooms of 5 m
   for (int i = 0; i < 300; ++i) {
     const double x = i % 20 * 5.0, y = i / 20 * 5.0;
     outlines.push_back({{x, y}, {x + 5, y}, {x + 5, y + 5}, {x, y + 5}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/ctl/commands/floor_plan.hpp"
+#include "runtime/ctl/commands/text_plan.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,13 +8,13 @@
 namespace zonepack {
 namespace {
 
-using Look = FloorPlan::Look;
+using Look = TextPlan::Look;
 
 // Two rooms of 8 m by 8 m next to each other, A to the west.
-FloorPlan two_rooms(bool utf8 = false) {
-  return FloorPlan({{{0, 0}, {8, 0}, {8, 8}, {0, 8}}, {{8, 0}, {16, 0}, {16, 8}, {8, 8}}}, utf8);
+TextPlan two_rooms(bool utf8 = false) {
+  return TextPlan({{{0, 0}, {8, 0}, {8, 8}, {0, 8}}, {{8, 0}, {16, 0}, {16, 8}, {8, 8}}}, utf8);
 }
-std::vector<FloorPlan::Shade> shades(Look a, Look b) {
+std::vector<TextPlan::Shade> shades(Look a, Look b) {
   return {{.name = "A", .look = a}, {.name = "B", .look = b}};
 }
 
@@ -24,7 +24,7 @@ std::vector<std::string> text_of(const std::vector<ScreenLine>& lines) {
   return text;
 }
 
-TEST(FloorPlan, DrawsZonesByTheirState) {
+TEST(TextPlan, DrawsZonesByTheirState) {
   // 16 columns of 1 m, and 4 rows of 2 m: A takes columns 0 to 7, B 8 to 15, of which column 8 is
   // the wall. Names are in the middle of the longest run, in the second row.
   const auto lines =
@@ -33,29 +33,29 @@ TEST(FloorPlan, DrawsZonesByTheirState) {
                                              "@@@@@@@@|.......\n", "@@@@@@@@|.......\n"}));
 }
 
-TEST(FloorPlan, PointsAnArrowWhereTheRobotGoes) {
+TEST(TextPlan, PointsAnArrowWhereTheRobotGoes) {
   // (2.5, 6.5): column 2, row 0. 1.6 rad: north.
   const auto lines = text_of(two_rooms().draw({16, 4}, shades(Look::kResident, Look::kWanted),
-                                              FloorPlan::Robot{2.5, 6.5, 1.6}, false));
+                                              TextPlan::Robot{2.5, 6.5, 1.6}, false));
   ASSERT_EQ(lines.size(), 4u);
   EXPECT_EQ(lines[0], "##^#####|???????\n");
   const auto south_east = text_of(two_rooms(true).draw(
-      {16, 4}, shades(Look::kAbsent, Look::kAbsent), FloorPlan::Robot{15.5, 0.5, -0.7}, false));
+      {16, 4}, shades(Look::kAbsent, Look::kAbsent), TextPlan::Robot{15.5, 0.5, -0.7}, false));
   EXPECT_TRUE(south_east[3].ends_with("↘\n")) << south_east[3];
 }
 
-TEST(FloorPlan, SaysHowWideItIs) {
+TEST(TextPlan, SaysHowWideItIs) {
   // 16 m by 8 m in 4 rows of 2 m: 1 m a column.
   EXPECT_EQ(two_rooms().columns_in(4), 16);
   EXPECT_EQ(two_rooms().columns_in(8), 32);
 }
 
-TEST(FloorPlan, KeepsToTheSizeAndLeavesOutARobotElsewhere) {
+TEST(TextPlan, KeepsToTheSizeAndLeavesOutARobotElsewhere) {
   for (const int columns : {1, 7, 16, 200}) {
     for (const int rows : {1, 3, 50}) {
       const auto lines =
           text_of(two_rooms().draw({columns, rows}, shades(Look::kFilling, Look::kFilling),
-                                   FloorPlan::Robot{1e9, -1e9, 0}, false));
+                                   TextPlan::Robot{1e9, -1e9, 0}, false));
       EXPECT_LE(lines.size(), static_cast<std::size_t>(rows));
       for (const std::string& line : lines) {
         EXPECT_LE(line.size(), static_cast<std::size_t>(columns) + 1);
@@ -65,13 +65,13 @@ TEST(FloorPlan, KeepsToTheSizeAndLeavesOutARobotElsewhere) {
   }
 }
 
-TEST(FloorPlan, IsEmptyWithoutGround) {
-  EXPECT_TRUE(FloorPlan().empty());
-  EXPECT_TRUE(FloorPlan({{}, {}}, false).empty());
-  EXPECT_TRUE(FloorPlan({{{1, 1}, {1, 1}}}, false).empty());
+TEST(TextPlan, IsEmptyWithoutGround) {
+  EXPECT_TRUE(TextPlan().empty());
+  EXPECT_TRUE(TextPlan({{}, {}}, false).empty());
+  EXPECT_TRUE(TextPlan({{{1, 1}, {1, 1}}}, false).empty());
 }
 
-TEST(FloorPlan, UsesNoColorWhereItIsNotWanted) {
+TEST(TextPlan, UsesNoColorWhereItIsNotWanted) {
   setenv("TERM", "xterm", 1);
   setenv("NO_COLOR", "1", 1);
   EXPECT_FALSE(terminal_shows_color());

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "runtime/localize/query/map_folder.hpp"
+#include "runtime/localize/query/stored_map.hpp"
 #include "tests/support/small_map.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/localize/query/map_folder.hpp"
+#include "runtime/localize/query/stored_map.hpp"
 
 #include <gmock/gmock.h>
 
@@ -14,9 +14,9 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-class MapFolderTest : public testing::Test {
+class StoredMapTest : public testing::Test {
  protected:
-  MapFolderTest() : map({recipe(1, 2)}, {recipe(2, 6)}) {}
+  StoredMapTest() : map({recipe(1, 2)}, {recipe(2, 6)}) {}
 
   static test_support::SignatureRecipe recipe(std::int32_t id, float x) {
     test_support::SignatureRecipe out;
@@ -37,17 +37,17 @@ class MapFolderTest : public testing::Test {
   test_support::SmallMap map;
 };
 
-TEST_F(MapFolderTest, SaysWhatItsManifestSays) {
+TEST_F(StoredMapTest, SaysWhatItsManifestSays) {
   map.content.detector = "8 Kp/MaxFeatures:300";
-  const auto opened = open_map_folder(written());
+  const auto opened = open_stored_map(written());
   ASSERT_TRUE(opened.ok()) << opened.error().message;
   EXPECT_EQ(opened->detector.max_features, 300);
   ASSERT_EQ(opened->catalog.zones.size(), 2u);
   EXPECT_EQ(opened->catalog.zones[1].name, "b");
 }
 
-TEST_F(MapFolderTest, GivesTheFeaturesOfOneZone) {
-  const auto opened = open_map_folder(written());
+TEST_F(StoredMapTest, GivesTheFeaturesOfOneZone) {
+  const auto opened = open_stored_map(written());
   ASSERT_TRUE(opened.ok());
   const auto features = read_zone_features(*opened, 1);
   ASSERT_TRUE(features.ok()) << features.error().message;
@@ -57,23 +57,23 @@ TEST_F(MapFolderTest, GivesTheFeaturesOfOneZone) {
   EXPECT_EQ(features->front().points.size(), 12u);  // of 20, as in map_features_test.cpp
 }
 
-TEST_F(MapFolderTest, NamesAFolderThatHoldsNoMap) {
-  const auto opened = open_map_folder(folder.path().string());
+TEST_F(StoredMapTest, NamesAFolderThatHoldsNoMap) {
+  const auto opened = open_stored_map(folder.path().string());
   ASSERT_FALSE(opened.ok());
   EXPECT_THAT(opened.error().message,
               AllOf(HasSubstr(folder / "manifest.zpm"), HasSubstr("zonepack build")));
 }
 
-TEST_F(MapFolderTest, NamesADetectorThatItCannotFollow) {
+TEST_F(StoredMapTest, NamesADetectorThatItCannotFollow) {
   map.content.detector = "6";
   const std::string name = written();
-  const auto opened = open_map_folder(name);
+  const auto opened = open_stored_map(name);
   ASSERT_FALSE(opened.ok());
   EXPECT_THAT(opened.error().message, AllOf(HasSubstr(name), HasSubstr("GFTT/BRIEF")));
 }
 
-TEST_F(MapFolderTest, NamesThePackAndTheZoneThatCannotBeRead) {
-  const auto opened = open_map_folder(written());
+TEST_F(StoredMapTest, NamesThePackAndTheZoneThatCannotBeRead) {
+  const auto opened = open_stored_map(written());
   ASSERT_TRUE(opened.ok());
   const std::string pack = folder / opened->catalog.zones[1].pack;
   auto bytes = test_support::read_bytes(pack);
