@@ -48,6 +48,6 @@ for _ in 1 2 3; do
   ! in_time || break
 done
 in_time || fail "p99.99 of a cycle in three drives:$took_us us, not $most_us"
-echo "$(wc -l <expected) zones entered, never without one; memory.peak $(cat $group/memory.peak) of" \
-  "$(cat $group/memory.max), worst wake-up $(took $result wakeup_us max) us," \
+echo "$(wc -l <expected) zones entered, never without one; memory.peak $(cat "$group/memory.peak") of" \
+  "$(cat "$group/memory.max"), worst wake-up $(took $result wakeup_us max) us," \
   "cycle p99.99$took_us us, worst $(took $result cycle_us max) us"
