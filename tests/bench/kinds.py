@@ -45,11 +45,11 @@ def packed_points(clouds, points):
         yield struct.pack("<4fIf", *p[:5], float(p[5]))
 
 
-def joined(clouds, submaps, frames):
+def joined(clouds, inverse, submaps, frames):
     """Submaps of so many frames each, in the frame of their first: as GLIM makes them."""
     for first in range(0, len(submaps), frames):
         number, stamp, T, _ = submaps[first]
-        back = [[T[k][i] for k in range(3)] + [-sum(T[k][i] * T[k][3] for k in range(3))] for i in range(3)]
+        back = inverse(T)
         yield number, stamp, T, [tuple(map(clouds.single, clouds.place(back, clouds.place(U, p[:3])))) + p[3:]
                                  for _, _, U, points in submaps[first:first + frames] for p in points]
 
@@ -108,7 +108,7 @@ def main():
         points = [tuple(clouds.single(v) for v in clouds.place(T, p[:3])) + p[3:] for _, _, T, own in submaps for p in own]
         clouds.write_pcd(work / "cloud.pcd", points, "binary")
         clouds.write_autoware(work / "autoware", points, 10)
-        clouds.write_glim(work / "glim", joined(clouds, submaps, 20))
+        clouds.write_glim(work / "glim", joined(clouds, stella_map.inverse, submaps, 20))
         clouds.write_glim(work / "small-glim", submaps)
         (work / "rtabmap.raw").write_bytes(b"".join(rtabmap_bytes(options.db)))
         (work / "stella.raw").write_bytes(b"".join(stella_bytes(work / "map.db")))

@@ -119,8 +119,20 @@ class Loop : public testing::Test {
                           .largest_pair = {.slots = 8, .signatures = 20},
                           .lease_ns = 1'000'000'000}};
   Cycle other_cycle{testing_support::sample_robot(),
-                    {graph, needs, load_s, {}, other_memory, loader, notes, nullptr, 2}};
-  MapInUse other_in_use{catalog, graph, needs, other_memory, other_cycle, 2};
+                    {.graph = graph,
+                     .needs = needs,
+                     .load_s = load_s,
+                     .pinned = {},
+                     .memory = other_memory,
+                     .loader = loader,
+                     .events = notes,
+                     .map = 2}};
+  MapInUse other_in_use{.catalog = catalog,
+                        .graph = graph,
+                        .needs = needs,
+                        .memory = other_memory,
+                        .cycle = other_cycle,
+                        .number = 2};
   SpscQueue<PoseCorrection> logged{8}, poses{64};
   SpscQueue<Command> commands{64};
   SpscQueue<CommandReply> replies{8};
