@@ -16,7 +16,7 @@
 #include "packer/build/map_builder.hpp"
 #include "packer/commands/session_options.hpp"
 #include "packer/commands/source_options.hpp"
-#include "packer/console/command_line.hpp"
+#include "packer/console/options.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/words.hpp"
 #include "platform/base/shell_word.hpp"

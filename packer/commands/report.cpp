@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "packer/commands/source_options.hpp"
-#include "packer/console/command_line.hpp"
+#include "packer/console/options.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/decode/map_reader.hpp"
 #include "packer/preview/ground.hpp"

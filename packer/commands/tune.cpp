@@ -15,7 +15,7 @@
 
 #include "packer/build/provenance.hpp"
 #include "packer/commands/report.hpp"
-#include "packer/console/command_line.hpp"
+#include "packer/console/options.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/text_table.hpp"
 #include "packer/console/words.hpp"

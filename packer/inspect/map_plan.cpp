@@ -73,7 +73,7 @@ MapPlan plan_map(const fb::Manifest& manifest, PayloadMask payload, std::span<co
   MapPlan plan;
   plan.payload = payload;
   plan.fixed_bytes = costs.fixed_bytes;
-  plan.transitions_bytes = transitions_bytes(costs.zone_slots.size(), costs.neighbours.size());
+  plan.transitions_bytes = transitions_bytes(costs);
   plan.smallest = smallest_budget(costs, pinned);
   std::uint64_t largest = 0;
   for (ZoneId id = 0; id < manifest.zones()->size(); ++id) {

@@ -33,7 +33,7 @@ std::string row(const char* name, double before, double after, int decimals, con
          padded(decimals_text(after, decimals), 12) + " " + unit + "\n";
 }
 
-std::string table(const Calibration& c) {
+std::string table(const WheelCalibration& c) {
   const CalibrationErrors& a = c.before;
   const CalibrationErrors& b = c.after;
   return "dead reckoning          present  calibrated\n" +
@@ -55,7 +55,7 @@ std::string json_of(const char* name, const CalibrationErrors& errors) {
          ", \"heading_rad\": " + decimals_text(errors.heading_rad, 6) + "}";
 }
 
-std::string json_of(const Calibration& c, const std::vector<WheelHint>& hints) {
+std::string json_of(const WheelCalibration& c, const std::vector<WheelHint>& hints) {
   return "{\n  \"distance_m\": " + decimals_text(c.distance_m, 3) +
          ",\n  \"turned_rad\": " + decimals_text(c.turned_rad, 3) +
          ",\n  \"seconds\": " + decimals_text(c.seconds, 3) +
@@ -86,7 +86,7 @@ Outcome<Settings> usable_settings(const std::string& config) {
 }
 
 // Whether the drive determines it, and the settings can hold it.
-bool can_be_pasted(const Calibration& c, const OdometrySettings& odometry) {
+bool can_be_pasted(const WheelCalibration& c, const OdometrySettings& odometry) {
   constexpr double kMostScale = 2;  // config/SETTINGS.md
   constexpr double kMostSigma = 0.2;
   const double mean = (c.fitted.left + c.fitted.right) / 2;
@@ -196,8 +196,8 @@ Outcome<std::vector<WheelStep>> read_wheel_steps(const Settings& settings, const
   return read_steps(settings, can, watch);
 }
 
-std::string calibrated_yaml(const Calibration& calibration, const OdometrySettings& odometry) {
-  const Calibration& c = calibration;
+std::string calibrated_yaml(const WheelCalibration& calibration, const OdometrySettings& odometry) {
+  const WheelCalibration& c = calibration;
   const double mean = (c.fitted.left + c.fitted.right) / 2;
   std::string text = "odometry:\n";
   if (is_length(odometry.unit)) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/calibrate/calibration.hpp"
+#include "runtime/calibrate/wheel_calibration.hpp"
 #include "runtime/settings/settings.hpp"
 
 namespace zonepack {
@@ -20,7 +20,7 @@ struct CalibrateArguments {
 int run_calibrate(const CalibrateArguments& arguments);
 
 // The keys of the section odometry that change, as YAML to paste over the present ones.
-std::string calibrated_yaml(const Calibration& calibration, const OdometrySettings& odometry);
+std::string calibrated_yaml(const WheelCalibration& calibration, const OdometrySettings& odometry);
 
 // What the wheels did over the CAN log `can`, as the settings read it; at least one step.
 Outcome<std::vector<WheelStep>> read_wheel_steps(const Settings& settings, const std::string& can);

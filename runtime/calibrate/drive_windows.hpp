@@ -7,7 +7,7 @@
 #include <functional>
 #include <optional>
 
-#include "runtime/calibrate/calibration.hpp"
+#include "runtime/calibrate/wheel_calibration.hpp"
 #include "runtime/odometry/can_signals.hpp"
 #include "runtime/run/run_files.hpp"
 

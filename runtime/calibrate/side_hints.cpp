@@ -12,9 +12,9 @@
 namespace zonepack {
 namespace {
 
-constexpr double kLeastForward_m = 0.1;     // of a window that says something about scale
-constexpr double kMostTurnPerMetre = 0.15;  // rad; more is not straight
-constexpr double kLeastTurn_rad = 0.3;      // of a window that says something about turning
+constexpr double kLeastForward_m = 0.1;       // of a window that says something about scale
+constexpr double kMostTurnPerMetre = 0.15;    // rad; more is not straight
+constexpr double kLeastWindowTurn_rad = 0.3;  // of a window that says something about turning
 constexpr std::size_t kLeastWindows = 3;
 constexpr double kSilent = 0.05;   // share of the true way that counts as none
 constexpr double kUsual = 1.33;    // tyres and calibration explain this factor, either way
@@ -54,8 +54,8 @@ Median ratio_of(const std::deque<DriveWindow>& windows, bool turning,
                 const std::function<double(const DriveWindow&)>& reported) {
   std::vector<double> values;
   for (const DriveWindow& window : windows) {
-    const bool use =
-        turning ? std::abs(window.truth.turn_rad) >= kLeastTurn_rad : is_straight(window.truth);
+    const bool use = turning ? std::abs(window.truth.turn_rad) >= kLeastWindowTurn_rad
+                             : is_straight(window.truth);
     if (!use) continue;
     values.push_back(reported(window) / (turning ? window.truth.turn_rad : window.truth.forward_m));
   }

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "runtime/calibrate/calibration.hpp"
 #include "runtime/calibrate/drive_windows.hpp"
 #include "runtime/calibrate/signal_trace.hpp"
+#include "runtime/calibrate/wheel_calibration.hpp"
 #include "runtime/calibrate/wheel_hints.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
 #include "runtime/settings/settings.hpp"

@@ -79,10 +79,10 @@ class RecordedNames {
 
  private:
   Outcome<void> add(std::uint32_t number, ByteSpan manifest, const std::string& folder) {
-    std::string why;
-    const auto catalog = Catalog::read(manifest, folder, kDefaultPayload, Catalog::kNoMost, &why);
+    const auto catalog = Catalog::read(manifest, folder, kDefaultPayload);
     if (!catalog) {
-      return failure("the recorded map cannot be used: " + why, catalog.error().code);
+      return failure("the recorded map cannot be used: " + catalog.error().message,
+                     catalog.error().code);
     }
     for (const CatalogZone& zone : catalog->zones) names_[number].push_back(zone.name);
     return {};

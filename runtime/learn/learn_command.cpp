@@ -15,6 +15,7 @@
 #include "platform/write_output.hpp"
 #include "runtime/learn/prediction_score.hpp"
 #include "runtime/map/catalog.hpp"
+#include "runtime/pack_format/file/transitions_bytes.hpp"
 #include "runtime/run/map_demand.hpp"
 #include "runtime/run/output_check.hpp"
 #include "runtime/run/run_inputs.hpp"
@@ -123,11 +124,9 @@ Outcome<void> learn(const LearnArguments& arguments) {
       !possible) {
     return possible;
   }
-  std::string why;
-  const auto catalog = Catalog::open(arguments.map, 0, Catalog::kNoMost, &why);
+  const auto catalog = Catalog::open(arguments.map, 0);
   if (!catalog) {
-    return failure(arguments.map + ": cannot be opened as a map: " +
-                       (why.empty() ? reason_text(catalog.error()) : why) +
+    return failure(arguments.map + ": cannot be opened as a map: " + catalog.error().message +
                        "; it must hold manifest.zpm as written by zonepack build",
                    catalog.error().code);
   }
@@ -174,8 +173,7 @@ Outcome<void> learn(const LearnArguments& arguments) {
   if (auto written = write_file(arguments.out, bytes); !written) return written;
 
   std::ostream& text = arguments.json == "-" ? std::cerr : std::cout;
-  const ByteCount charged =
-      Transitions::table_bytes(catalog->zones.size(), catalog->portals.size());
+  const ByteCount charged = transitions_bytes(catalog->costs());
   text << table(*drives, rows, all) << arguments.out << ": " << counted(bytes.size(), "byte")
        << ", " << counted(learned.contexts.size(), "context") << " of "
        << counted(learned.steps, "step") << "; takes " << counted(charged, "byte")

@@ -65,25 +65,19 @@ Outcome<std::shared_ptr<MapVersion>> MapChange::make_next(const MapVersion& in_u
   const std::string path = folder + "/" + std::string(kManifestName);
   const ByteCount room = in_use.model().room_for_next();
   auto manifest = read_manifest_file(folder, room, ReadMode::kBuffered);
-  std::string why;
-  auto catalog = manifest ? Catalog::read(*manifest, folder, in_use.catalog().payload, room, &why)
-                          : Result<Catalog>(manifest.error());
-  if (!catalog && catalog.error().code == ErrorCode::kTooLarge && catalog.error().detail > 0) {
-    return failure(path + ": reading it and holding its tables beside the map in use takes " +
-                       format_byte_count(static_cast<ByteCount>(catalog.error().detail)) +
-                       ", over the " + format_byte_count(room) + " that the budget of " +
+  auto catalog = manifest ? Catalog::read(*manifest, folder, in_use.catalog().payload, room)
+                          : Outcome<Catalog>(manifest.error());
+  if (!catalog && catalog.error().code == ErrorCode::kNoRoom) {
+    return failure(path + ": " + catalog.error().message + " beside the map in use (budget of " +
                        format_byte_count(in_use.model().limits.budget) +
-                       " leaves for it; start zoned again with this map, or with a larger budget",
+                       "); start zoned again with this map, or with a larger budget",
                    ErrorCode::kTooLarge);
   }
   if (!catalog) {
-    const Error& error = catalog.error();
-    if (const auto excess = excess_of(error)) why = to_string(*excess);
-    if (why.empty()) why = reason_text(error);
-    return failure(path + ": " + why +
+    return failure(path + ": " + catalog.error().message +
                        "; expected a manifest as zonepack build writes it: copy it again, as the "
                        "last file, or build the map again",
-                   error.code);
+                   catalog.error().code);
   }
   if (auto chosen = catalog->choose_layers(ports_.settings.memory.layers); !chosen) {
     return failure(path + ": " + chosen.error().message, chosen.error().code);

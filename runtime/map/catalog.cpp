@@ -26,39 +26,44 @@ std::vector<std::string> layers_of_zones(const fb::Manifest& manifest) {
   return {names.begin(), names.end()};
 }
 
+Failure no_room_failure(ByteCount need, ByteCount most) {
+  return failure("reading it and holding its tables takes " + format_byte_count(need) +
+                     ", over the " + format_byte_count(most) + " that there is for it",
+                 ErrorCode::kNoRoom);
+}
+
 }  // namespace
 
-Result<std::vector<std::byte>> read_manifest_file(const std::string& folder, ByteCount most,
-                                                  ReadMode mode) {
+Outcome<std::vector<std::byte>> read_manifest_file(const std::string& folder, ByteCount most,
+                                                   ReadMode mode) {
   const std::uint64_t limit = std::min(kMaxManifestFileBytes, most / kManifestHeldTimes);
   auto file = read_file(folder + "/" + std::string(kManifestName), limit, mode);
-  if (file || file.error().code != ErrorCode::kTooLarge) return file;
-  const auto size = static_cast<ByteCount>(file.error().detail);
+  if (file) return std::move(file).value();
+  const Error& error = file.error();
+  if (error.code != ErrorCode::kTooLarge) return failure(reason_text(error), error.code);
+  const auto size = static_cast<ByteCount>(error.detail);
   if (size > kMaxManifestFileBytes) {
-    return over_limit(LimitId::kManifestBytes, size - kManifestFrameBytes);
+    return failure(to_string(Excess{LimitId::kManifestBytes, size - kManifestFrameBytes}),
+                   error.code);
   }
-  return {ErrorCode::kTooLarge, static_cast<std::int64_t>(kManifestHeldTimes * size)};
+  return no_room_failure(kManifestHeldTimes * size, most);
 }
 
-Result<Catalog> Catalog::open(const std::string& folder, PayloadMask payload, ByteCount most,
-                              std::string* why) {
-  const Result<std::vector<std::byte>> file = read_manifest_file(folder, most, ReadMode::kBuffered);
-  if (file) return read(*file, folder, payload, most, why);
-  const auto excess = excess_of(file.error());
-  if (excess && why != nullptr) *why = to_string(*excess);
-  return file.error();
+Outcome<Catalog> Catalog::open(const std::string& folder, PayloadMask payload, ByteCount most) {
+  const auto file = read_manifest_file(folder, most, ReadMode::kBuffered);
+  if (!file) return file.error();
+  return read(*file, folder, payload, most);
 }
 
-Result<Catalog> Catalog::read(ByteSpan file, const std::string& folder, PayloadMask payload,
-                              ByteCount most, std::string* why) {
+Outcome<Catalog> Catalog::read(ByteSpan file, const std::string& folder, PayloadMask payload,
+                               ByteCount most) {
   ManifestFault fault;
   const Result<const fb::Manifest*> checked = check_manifest(file, &fault);
   if (!checked) {
-    if (why != nullptr) *why = manifest_fault_text(checked.error(), fault);
-    return checked.error();
+    return failure(manifest_fault_text(checked.error(), fault), checked.error().code);
   }
   const ByteCount need = kManifestHeldTimes * file.size() + table_bytes(**checked);
-  if (need > most) return {ErrorCode::kTooLarge, static_cast<std::int64_t>(need)};
+  if (need > most) return no_room_failure(need, most);
   const fb::Manifest& manifest = **checked;
 
   Catalog catalog;

@@ -63,14 +63,14 @@ struct Catalog {
   }
 
   // Reads FOLDER/manifest.zpm and checks all of it. kNotFound, kIo, and the errors of
-  // check_manifest. kTooLarge with the bytes needed: reading the manifest and holding its tables
-  // would take more than `most`; nothing of that size was allocated. `why` receives what is wrong
-  // with a manifest that was read or is too long for the format: entry, zone, field, value, limit.
-  static Result<Catalog> open(const std::string& folder, PayloadMask payload,
-                              ByteCount most = kNoMost, std::string* why = nullptr);
+  // check_manifest. kNoRoom: reading the manifest and holding its tables would take more than
+  // `most`; nothing of that size was allocated. The message says what is wrong (entry, zone, field,
+  // value, limit, bytes); the caller adds which map it was for, and what to do.
+  static Outcome<Catalog> open(const std::string& folder, PayloadMask payload,
+                               ByteCount most = kNoMost);
   // The same from the manifest's bytes, which must be aligned to 8; the folder may be gone.
-  static Result<Catalog> read(ByteSpan manifest, const std::string& folder, PayloadMask payload,
-                              ByteCount most = kNoMost, std::string* why = nullptr);
+  static Outcome<Catalog> read(ByteSpan manifest, const std::string& folder, PayloadMask payload,
+                               ByteCount most = kNoMost);
 
   // Leaves zones of other layers out of what is loaded and charged; they stay on the plan. Zones
   // without a layer, and an empty choice, leave all as it is. The message names a layer that no
@@ -90,10 +90,9 @@ struct Catalog {
   ZoneId find(std::string_view name) const noexcept;
 };
 
-// The bytes of FOLDER/manifest.zpm. kTooLarge, with the bytes that reading it would take, when that
-// is more than `most`, and as over_limit() has it when the file is longer than the format allows;
-// nothing was read then.
-Result<std::vector<std::byte>> read_manifest_file(const std::string& folder, ByteCount most,
-                                                  ReadMode mode);
+// The bytes of FOLDER/manifest.zpm, with the errors and messages of Catalog::open: where reading it
+// would take more than `most`, or the file is longer than the format allows, nothing is read.
+Outcome<std::vector<std::byte>> read_manifest_file(const std::string& folder, ByteCount most,
+                                                   ReadMode mode);
 
 }  // namespace zonepack

@@ -23,11 +23,9 @@ Outcome<Catalog> catalog_of(const RecordingReader& recording, const Settings& se
   if (recorded == nullptr) {
     return failure(which + "is not in the recording", ErrorCode::kNotFound);
   }
-  std::string why;
-  auto catalog = Catalog::read(recorded->manifest, recorded->folder, settings.memory.payload.mask,
-                               Catalog::kNoMost, &why);
+  auto catalog = Catalog::read(recorded->manifest, recorded->folder, settings.memory.payload.mask);
   if (!catalog) {
-    return failure(which + "cannot be used: " + why, catalog.error().code);
+    return failure(which + "cannot be used: " + catalog.error().message, catalog.error().code);
   }
   if (auto chosen = catalog->choose_layers(settings.memory.layers); !chosen) return chosen.error();
   return std::move(catalog).value();
@@ -251,12 +249,11 @@ Outcome<RecordedRun> open_recorded_run(const RecordingPreface& preface) {
     for (const std::string& fault : loaded.faults) all += "\n  " + fault;
     return failure(std::move(all));
   }
-  std::string why;
-  Result<Catalog> catalog =
-      Catalog::read(preface.manifest, preface.map_folder, loaded.settings.memory.payload.mask,
-                    Catalog::kNoMost, &why);
+  auto catalog =
+      Catalog::read(preface.manifest, preface.map_folder, loaded.settings.memory.payload.mask);
   if (!catalog) {
-    return failure("the recorded map cannot be used: " + why, catalog.error().code);
+    return failure("the recorded map cannot be used: " + catalog.error().message,
+                   catalog.error().code);
   }
   if (auto chosen = catalog->choose_layers(loaded.settings.memory.layers); !chosen) {
     return chosen.error();

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "runtime/control/expected_use.hpp"
+#include "runtime/pack_format/file/transitions_bytes.hpp"
 #include "runtime/run/map_demand.hpp"
 
 namespace zonepack {
@@ -110,10 +111,10 @@ ByteCount MapModel::room_for_next() const noexcept {
   return limits.budget - std::min(limits.budget, held) + charged_reading(catalog) + kFreeMapBytes;
 }
 
-ByteCount extra_fixed_bytes(const Catalog& catalog, const MapTerms& terms) noexcept {
+ByteCount extra_fixed_bytes(const Catalog& catalog, const MapTerms& terms) {
   const std::size_t zones = catalog.zones.size();
   ByteCount bytes = 0;
-  if (terms.habits) bytes += Transitions::table_bytes(zones, catalog.portals.size());
+  if (terms.habits) bytes += transitions_bytes(catalog.costs());
   if (terms.eviction == EvictionRule::kExpected) {
     bytes += ExpectedUse::table_bytes(zones) + Residency::order_bytes(zones);
   }

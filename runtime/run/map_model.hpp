@@ -33,7 +33,7 @@ struct MapTerms {
 };
 
 // What holding a map on these terms takes besides what the catalog charges.
-ByteCount extra_fixed_bytes(const Catalog& catalog, const MapTerms& terms) noexcept;
+ByteCount extra_fixed_bytes(const Catalog& catalog, const MapTerms& terms);
 // The catalog with these charged.
 Catalog charged_on(Catalog catalog, const MapTerms& terms);
 

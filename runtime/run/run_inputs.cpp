@@ -14,37 +14,32 @@
 namespace zonepack {
 namespace {
 
-Failure map_failure(const std::string& folder, const Error& error, const std::string& why,
+Failure map_failure(const std::string& folder, const Failure& why,
                     std::optional<ByteCount> budget) {
+  const std::string manifest = folder + "/" + std::string(kManifestName);
   const std::string verify = "zonepack verify " + shell_word(folder);
-  if (error.code == ErrorCode::kTooLarge && error.detail > 0) {
-    const std::string limit = budget ? "budget of " + format_byte_count(*budget)
-                                     : "default limit of " +
-                                           format_byte_count(default_budget_limit()) +
-                                           ", a quarter of this computer's memory";
-    return {error.code, folder + "/" + std::string(kManifestName) +
-                            ": reading it and holding its tables takes " +
-                            format_byte_count(static_cast<ByteCount>(error.detail)) +
-                            ", over the " + limit +
-                            "; whether it is as zonepack build writes it is said by: " + verify};
-  }
-  if (!why.empty()) {
-    return {error.code,
-            folder + "/" + std::string(kManifestName) + ": " + why +
-                "; build the map again with zonepack build, or copy it again; what is wrong "
-                "with it: " +
-                verify};
-  }
-  if (error.code == ErrorCode::kNotFound) {
-    return {error.code, folder + "/" + std::string(kManifestName) +
+  switch (why.code) {
+    case ErrorCode::kNoRoom:
+      return {why.code,
+              manifest + ": " + why.message + ": " + format_byte_count(kFreeMapBytes) +
+                  " and the " +
+                  (budget ? "budget of " + format_byte_count(*budget)
+                          : "default limit of " + format_byte_count(default_budget_limit()) +
+                                ", a quarter of this computer's memory") +
+                  "; whether it is as zonepack build writes it is said by: " + verify};
+    case ErrorCode::kNotFound:
+      return {why.code, manifest +
                             ": no such file; expected the folder of a map, which zonepack build "
                             "writes: zonepack build --help"};
+    case ErrorCode::kIo:
+      return {why.code, manifest + ": cannot be read: " + why.message +
+                            "; expected the folder of a map, which zonepack build writes"};
+    default:
+      return {why.code, manifest + ": " + why.message +
+                            "; build the map again with zonepack build, or copy it again; what is "
+                            "wrong with it: " +
+                            verify};
   }
-  return {
-      error.code,
-      folder + ": cannot be opened as a map: " + to_string(error.code) + " (" +
-          std::to_string(error.detail) +
-          "); it must hold manifest.zpm as written by zonepack build; what it lacks: " + verify};
 }
 
 }  // namespace
@@ -65,11 +60,9 @@ Outcome<RunInputs> read_run_inputs(const RunChoices& choices) {
   }
   const std::optional<ByteCount> budget =
       choices.budget ? choices.budget : inputs.settings.memory.budget;
-  std::string why;
-  Result<Catalog> catalog =
-      Catalog::open(folder, inputs.settings.memory.payload.mask,
-                    budget.value_or(default_budget_limit()) + kFreeMapBytes, &why);
-  if (!catalog) return map_failure(folder, catalog.error(), why, budget);
+  auto catalog = Catalog::open(folder, inputs.settings.memory.payload.mask,
+                               budget.value_or(default_budget_limit()) + kFreeMapBytes);
+  if (!catalog) return map_failure(folder, catalog.error(), budget);
   if (auto chosen = catalog->choose_layers(inputs.settings.memory.layers); !chosen) {
     return chosen.error();
   }

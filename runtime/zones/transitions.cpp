@@ -6,13 +6,8 @@
 #include <tuple>
 
 #include "platform/base/require.hpp"
-#include "runtime/pack_format/file/transitions_bytes.hpp"
 
 namespace zonepack {
-
-// What zonepack plan says.
-static_assert(sizeof(Transitions::Context) == kTransitionContextBytes);
-static_assert(Transitions::kMostContexts == kMostTransitionContexts);
 
 namespace {
 
@@ -37,6 +32,13 @@ Point2 middle(const Segment2& segment) noexcept {
 
 auto key(const Transitions::Context& context) noexcept {
   return std::tuple(context.before, context.now);
+}
+
+// A stay's new mean, when it is the `number`th.
+std::uint32_t mean_of(std::uint32_t mean, std::uint32_t milliseconds,
+                      std::int64_t number) noexcept {
+  const std::int64_t off = std::int64_t{milliseconds} - mean;
+  return static_cast<std::uint32_t>(mean + off / number);
 }
 
 bool likelier(const Successor& a, const Successor& b) noexcept {
@@ -83,15 +85,20 @@ std::size_t Transitions::Context::size() const noexcept {
   return size;
 }
 
-std::size_t Transitions::capacity_for(std::size_t zones, std::size_t portals) noexcept {
-  return std::min(kMostContexts, zones + 2 * portals);
+Transitions::Transitions(const ZoneGraph& graph)
+    : graph_(graph), exits_(graph.first_exit(static_cast<ZoneId>(graph.zone_count()))) {
+  TransitionRoom room;
+  for (ZoneId zone = 0; zone < graph.zone_count(); ++zone) room.add(graph.exits(zone).size());
+  most_ = room.contexts();
+  ways_.reserve(most_);
+  seen_.reserve(most_);
+  sizes_.reserve(most_);
+  entries_.reserve(room.successors());
 }
 
-Transitions::Transitions(const ZoneGraph& graph) : graph_(graph) {
-  std::size_t ways = 0;
-  for (ZoneId zone = 0; zone < graph.zone_count(); ++zone) ways += graph.exits(zone).size();
-  most_ = capacity_for(graph.zone_count(), ways / 2);
-  contexts_.reserve(most_);
+ByteCount Transitions::memory_bytes() const noexcept {
+  return ways_.capacity() * sizeof(ways_[0]) + seen_.capacity() * sizeof(seen_[0]) +
+         sizes_.capacity() * sizeof(sizes_[0]) + entries_.capacity() * sizeof(entries_[0]);
 }
 
 bool joined(const ZoneGraph& graph, ZoneId a, ZoneId b) noexcept {
@@ -100,50 +107,141 @@ bool joined(const ZoneGraph& graph, ZoneId a, ZoneId b) noexcept {
   return std::any_of(exits.begin(), exits.end(), [b](const Exit& exit) { return exit.to == b; });
 }
 
-const Transitions::Context* Transitions::find(ZoneId before, ZoneId now) const noexcept {
-  const auto place = std::ranges::lower_bound(contexts_, std::tuple(before, now), {}, key);
-  if (place == contexts_.end() || place->before != before || place->now != now) return nullptr;
-  return &*place;
+// Contexts are told apart by how the robot came: the number of the first exit of `now` that leads
+// back, and for those of order 1, which come after these, the zone.
+std::uint32_t Transitions::way(ZoneId before, ZoneId now) const noexcept {
+  return before == kNoZone ? exits_ + now : graph_.first_exit(now) + exit_to(now, before);
 }
 
-Transitions::Context& Transitions::open(ZoneId before, ZoneId now) noexcept {
-  if (const Context* const found = find(before, now)) return const_cast<Context&>(*found);
+std::uint8_t Transitions::exit_to(ZoneId now, ZoneId next) const noexcept {
+  const std::span<const Exit> exits = graph_.exits(now);
+  const auto place = std::ranges::find(exits, next, &Exit::to);
+  ZP_REQUIRE(place != exits.end());
+  return static_cast<std::uint8_t>(place - exits.begin());
+}
+
+Transitions::Place Transitions::at(std::size_t index) const noexcept {
+  Place place{.index = index};
+  for (std::size_t i = 0; i < index; ++i) place.first += sizes_[i];
+  if (index < sizes_.size()) place.size = sizes_[index];
+  return place;
+}
+
+Transitions::Place Transitions::find(ZoneId before, ZoneId now) const noexcept {
+  const std::uint32_t wanted = way(before, now);
+  const auto place = std::ranges::lower_bound(ways_, wanted);
+  if (place == ways_.end() || *place != wanted) return {.index = ways_.size()};
+  return at(static_cast<std::size_t>(place - ways_.begin()));
+}
+
+Transitions::Place Transitions::open(ZoneId before, ZoneId now) noexcept {
+  if (const Place place = find(before, now); place.index < ways_.size()) return place;
   ZP_REQUIRE(most_ > 0);
-  if (contexts_.size() == most_) {
+  if (ways_.size() == most_) {
     // The farthest back, however often the count of steps has wrapped around.
-    const auto oldest = std::ranges::max_element(
-        contexts_, {}, [this](const Context& context) { return steps_ - context.seen; });
-    contexts_.erase(oldest);
+    const auto oldest =
+        std::ranges::max_element(seen_, {}, [this](std::uint32_t seen) { return steps_ - seen; });
+    close(at(static_cast<std::size_t>(oldest - seen_.begin())));
   }
-  const auto place = std::ranges::lower_bound(contexts_, std::tuple(before, now), {}, key);
-  Context context;
-  context.before = before;
-  context.now = now;
-  return *contexts_.insert(place, context);
+  const std::uint32_t wanted = way(before, now);
+  const auto index = std::ranges::lower_bound(ways_, wanted) - ways_.begin();
+  ways_.insert(ways_.begin() + index, wanted);
+  seen_.insert(seen_.begin() + index, steps_);
+  sizes_.insert(sizes_.begin() + index, 0);
+  return at(static_cast<std::size_t>(index));
 }
 
-void Transitions::count(Context& context, ZoneId next, std::uint32_t milliseconds) noexcept {
-  context.seen = steps_;
-  for (Entry& entry : context.next) entry.count -= entry.count / kFade;
-  const std::size_t size = context.size();
-  const auto end = context.next.begin() + static_cast<std::ptrdiff_t>(size);
-  auto place = std::find_if(context.next.begin(), end,
-                            [&](const Entry& entry) { return entry.zone == next; });
-  if (place == end) {
-    if (size == context.next.size()) {
-      // The rarest makes room, of several the one not seen for longest.
-      place = std::min_element(context.next.begin(), end, [this](const Entry& a, const Entry& b) {
-        return a.count != b.count ? a.count < b.count : steps_ - a.seen > steps_ - b.seen;
-      });
-    }
-    *place = {next, 0, milliseconds, 0};
+void Transitions::close(const Place& place) noexcept {
+  const auto index = static_cast<std::ptrdiff_t>(place.index);
+  const auto first = entries_.begin() + static_cast<std::ptrdiff_t>(place.first);
+  entries_.erase(first, first + static_cast<std::ptrdiff_t>(place.size));
+  ways_.erase(ways_.begin() + index);
+  seen_.erase(seen_.begin() + index);
+  sizes_.erase(sizes_.begin() + index);
+}
+
+void Transitions::add(Place& place, const Packed& entry) noexcept {
+  ZP_REQUIRE(entries_.size() < entries_.capacity());
+  entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(place.first + place.size), entry);
+  ++sizes_[place.index];
+  ++place.size;
+}
+
+Transitions::Packed Transitions::pack(ZoneId now, const Entry& entry) const noexcept {
+  const std::uint32_t age = std::min(steps_ - entry.seen, kOldest);
+  return {.exit = exit_to(now, entry.zone),
+          .count_less_one = (entry.count - 1) & (kMostCount - 1),
+          .milliseconds = entry.milliseconds & kMillisecondBits,
+          .seen = (steps_ - age) & kOldest};
+}
+
+Transitions::Entry Transitions::entry_of(ZoneId now, const Packed& packed) const noexcept {
+  const std::uint32_t age = (steps_ - static_cast<std::uint32_t>(packed.seen)) & kOldest;
+  return {.zone = graph_.exits(now)[packed.exit].to,
+          .count = static_cast<std::uint32_t>(packed.count_less_one) + 1,
+          .milliseconds = static_cast<std::uint32_t>(packed.milliseconds),
+          .seen = steps_ - age};
+}
+
+Transitions::Context Transitions::context(std::size_t index) const noexcept {
+  const Place place = at(index);
+  const std::uint32_t way = ways_[index];
+  Context context;
+  context.seen = seen_[index];
+  if (way < exits_) {
+    context.now = graph_.zone_of_exit(way);
+    context.before = graph_.exits(context.now)[way - graph_.first_exit(context.now)].to;
+  } else {
+    context.now = way - exits_;
   }
-  const std::int64_t stays =
-      std::clamp<std::int64_t>((place->count + kOne / 2) / kOne + 1, 1, kMeanOf);
-  const std::int64_t off = std::int64_t{milliseconds} - place->milliseconds;
-  place->milliseconds = static_cast<std::uint32_t>(place->milliseconds + off / stays);
-  place->count = std::min(place->count + kOne, kMostCount);
-  place->seen = steps_;
+  for (std::size_t i = 0; i < place.size; ++i) {
+    context.next[i] = entry_of(context.now, entries_[place.first + i]);
+  }
+  return context;
+}
+
+std::vector<Transitions::Context> Transitions::contexts() const {
+  std::vector<Context> all;
+  all.reserve(ways_.size());
+  for (std::size_t i = 0; i < ways_.size(); ++i) all.push_back(context(i));
+  std::ranges::sort(all, {}, key);
+  return all;
+}
+
+void Transitions::count(ZoneId before, ZoneId now, ZoneId next,
+                        std::uint32_t milliseconds) noexcept {
+  Place place = open(before, now);
+  seen_[place.index] = steps_;
+  const auto entries = std::span(entries_).subspan(place.first, place.size);
+  std::size_t found = place.size;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    Entry entry = entry_of(now, entries[i]);
+    entry.count -= entry.count / kFade;
+    entries[i] = pack(now, entry);
+    if (entry.zone == next) found = i;
+  }
+  Entry counted{next, 0, milliseconds, 0};
+  if (found < place.size) {
+    counted = entry_of(now, entries[found]);
+  } else if (place.size == Successors::kMost) {
+    // The rarest makes room, of several the one not seen for longest.
+    const auto rarest = std::ranges::min_element(entries, [&](const Packed& a, const Packed& b) {
+      const Entry x = entry_of(now, a), y = entry_of(now, b);
+      return x.count != y.count ? x.count < y.count : steps_ - x.seen > steps_ - y.seen;
+    });
+    found = static_cast<std::size_t>(rarest - entries.begin());
+  }
+  const std::int64_t number =
+      std::clamp<std::int64_t>((counted.count + kOne / 2) / kOne + 1, 1, kMeanOf);
+  counted.milliseconds = mean_of(counted.milliseconds, milliseconds, number);
+  counted.count = std::min(counted.count + kOne, kMostCount);
+  counted.seen = steps_;
+  const Packed packed = pack(now, counted);
+  if (found < place.size) {
+    entries_[place.first + found] = packed;
+  } else {
+    add(place, packed);
+  }
 }
 
 bool Transitions::learn(ZoneId before, ZoneId now, ZoneId next, std::int64_t stay_ns) noexcept {
@@ -151,8 +249,8 @@ bool Transitions::learn(ZoneId before, ZoneId now, ZoneId next, std::int64_t sta
   const auto milliseconds = static_cast<std::uint32_t>(
       std::clamp<std::int64_t>(stay_ns / 1'000'000, 0, kMostMilliseconds));
   ++steps_;
-  count(open(kNoZone, now), next, milliseconds);
-  if (joined(graph_, before, now)) count(open(before, now), next, milliseconds);
+  count(kNoZone, now, next, milliseconds);
+  if (joined(graph_, before, now)) count(before, now, next, milliseconds);
   return true;
 }
 
@@ -185,13 +283,15 @@ void Transitions::add_geometry(ZoneId before, ZoneId now, Candidates& all) const
   }
 }
 
-void Transitions::blend_in(const Context* context, Candidates& all) const noexcept {
-  if (context == nullptr) return;
+void Transitions::blend_in(ZoneId now, const Place& place, Candidates& all) const noexcept {
+  if (place.size == 0) return;
   double sum = kBackOff;
-  for (const Entry& entry : context->next) sum += static_cast<double>(entry.count) / kOne;
+  for (std::size_t i = 0; i < place.size; ++i) {
+    sum += static_cast<double>(entry_of(now, entries_[place.first + i]).count) / kOne;
+  }
   for (std::size_t i = 0; i < all.count; ++i) all.all[i].share *= kBackOff / sum;
-  for (const Entry& entry : context->next) {
-    if (entry.zone == kNoZone) break;
+  for (std::size_t i = 0; i < place.size; ++i) {
+    const Entry entry = entry_of(now, entries_[place.first + i]);
     Candidates::One* const one = all.of(entry.zone);
     if (one == nullptr) continue;
     one->share += static_cast<double>(entry.count) / kOne / sum;
@@ -203,19 +303,18 @@ void Transitions::blend_in(const Context* context, Candidates& all) const noexce
 Successors Transitions::after(ZoneId before, ZoneId now) const noexcept {
   Successors successors;
   if (now >= graph_.zone_count()) return successors;
-  const Context* const order2 = joined(graph_, before, now) ? find(before, now) : nullptr;
-  const Context* const order1 = find(kNoZone, now);
+  const Place order2 = joined(graph_, before, now) ? find(before, now) : Place{};
+  const Place order1 = find(kNoZone, now);
   Candidates all;
   // What was counted first, so that it has room whatever the number of portals.
-  for (const Context* const context : {order2, order1}) {
-    if (context == nullptr) continue;
-    for (const Entry& entry : context->next) {
-      if (entry.zone != kNoZone) all.of(entry.zone);
+  for (const Place& place : {order2, order1}) {
+    for (std::size_t i = 0; i < place.size; ++i) {
+      all.of(entry_of(now, entries_[place.first + i]).zone);
     }
   }
   add_geometry(before, now, all);
-  blend_in(order1, all);
-  blend_in(order2, all);
+  blend_in(now, order1, all);
+  blend_in(now, order2, all);
   for (std::size_t i = 0; i < all.count; ++i) {
     const Candidates::One& one = all.all[i];
     successors.add({one.zone, static_cast<float>(one.share), static_cast<float>(one.seconds)});
@@ -233,9 +332,9 @@ double Transitions::seconds_in(ZoneId before, ZoneId now) const noexcept {
 }
 
 bool Transitions::restore(const Context& context) noexcept {
-  if (contexts_.size() == most_ || find(context.before, context.now) != nullptr) return false;
-  if (context.now >= graph_.zone_count()) return false;
+  if (ways_.size() == most_ || context.now >= graph_.zone_count()) return false;
   if (context.before != kNoZone && !joined(graph_, context.before, context.now)) return false;
+  if (find(context.before, context.now).index < ways_.size()) return false;
   const std::size_t size = context.size();
   if (size == 0) return false;
   for (std::size_t i = 0; i < size; ++i) {
@@ -247,19 +346,23 @@ bool Transitions::restore(const Context& context) noexcept {
       if (context.next[k].zone == entry.zone) return false;
     }
   }
-  Context& added = open(context.before, context.now);
-  added.seen = context.seen;
-  std::copy_n(context.next.begin(), size, added.next.begin());
+  Place added = open(context.before, context.now);
+  seen_[added.index] = context.seen;
+  for (std::size_t i = 0; i < size; ++i) add(added, pack(context.now, context.next[i]));
   return true;
 }
 
 void Transitions::take_over(const Transitions& other) noexcept {
-  contexts_.clear();
+  ways_.clear();
+  seen_.clear();
+  sizes_.clear();
+  entries_.clear();
   steps_ = other.steps_;
   const auto here = [&](ZoneId zone) {
     return zone == kNoZone ? kNoZone : graph_.find(other.graph_.name(zone));
   };
-  for (const Context& theirs : other.contexts_) {
+  for (std::size_t i = 0; i < other.ways_.size(); ++i) {
+    const Context theirs = other.context(i);
     Context context;
     context.before = here(theirs.before);
     context.now = here(theirs.now);

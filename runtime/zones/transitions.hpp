@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "platform/base/byte_count.hpp"
+#include "runtime/pack_format/file/transitions_bytes.hpp"
 #include "runtime/pack_format/ids.hpp"
+#include "runtime/pack_format/limits.hpp"
 #include "runtime/zones/zone_graph.hpp"
 
 namespace zonepack {
@@ -23,7 +25,7 @@ struct Successor {
 // The likeliest zones to be entered next: the likeliest first, then lowest ZoneId.
 class Successors {
  public:
-  static constexpr std::size_t kMost = 8;
+  static constexpr std::size_t kMost = kMostTransitionSuccessors;
 
   std::size_t size() const noexcept { return count_; }
   bool empty() const noexcept { return count_ == 0; }
@@ -55,28 +57,30 @@ bool joined(const ZoneGraph& graph, ZoneId a, ZoneId b) noexcept;
 //
 // The table is of fixed size: when it is full, the context that was not seen for longest goes.
 //
-// Real-time: no allocation after construction. after() costs the portals of one zone times at most
-// kMostCandidates, learn() at most a move of the table (kMostContexts of 144 bytes).
+// Memory: transitions_bytes() (pack_format/file/transitions_bytes.hpp), all of it from the start.
+// Real-time: no allocation after construction, but for contexts(). after() costs the portals of one
+// zone times at most kMostCandidates, and like learn() a look at the size of each context before
+// the one it needs; learn() at most a move of the table besides.
 // Threads: one at a time.
 class Transitions {
  public:
-  static constexpr std::size_t kMostContexts = 2048;
+  static constexpr std::size_t kMostContexts = kMostTransitionContexts;
   static constexpr std::uint32_t kOne = 1024;  // a count of one
   static constexpr std::uint32_t kFade = 64;
   static constexpr std::uint32_t kMostCount = kFade * kOne;
   static constexpr std::uint32_t kMostMilliseconds = 3'600'000;
+  static constexpr std::uint32_t kOldest = (1u << 18) - 1;  // steps since a successor was counted
 
   struct Entry {
     ZoneId zone = kNoZone;  // a neighbour; kNoZone: none here, nor further on
     std::uint32_t count = 0;
     std::uint32_t milliseconds = 0;  // mean, from entering the zone before to entering this one
-    std::uint32_t seen = 0;          // steps() when it was last counted
+    std::uint32_t seen = 0;          // steps() when it was last counted; at most kOldest before now
   };
   struct Context {
     ZoneId before = kNoZone;  // kNoZone: of order 1
     ZoneId now = kNoZone;
     std::uint32_t seen = 0;
-    std::uint32_t reserved = 0;
     std::array<Entry, Successors::kMost> next{};
 
     std::size_t size() const noexcept;
@@ -104,32 +108,60 @@ class Transitions {
   // this map or the table, or breaks a rule.
   bool restore(const Context& context) noexcept;
 
-  // Ascending by zone before and zone; kNoZone comes last.
-  std::span<const Context> contexts() const noexcept { return contexts_; }
+  // All, ascending by zone before and zone; kNoZone comes last.
+  std::vector<Context> contexts() const;
   std::uint32_t steps() const noexcept { return steps_; }  // counted so far, modulo 2^32
   void continue_steps(std::uint32_t steps) noexcept { steps_ = steps; }
   std::size_t capacity() const noexcept { return most_; }
   const ZoneGraph& graph() const noexcept { return graph_; }
-
-  // What the table for a map takes from the budget.
-  static ByteCount table_bytes(std::size_t zones, std::size_t portals) noexcept {
-    return capacity_for(zones, portals) * sizeof(Context);
-  }
+  ByteCount memory_bytes() const noexcept;  // everything it allocated
 
  private:
   static constexpr std::size_t kMostCandidates = 4 * Successors::kMost;
   struct Candidates;
 
-  static std::size_t capacity_for(std::size_t zones, std::size_t portals) noexcept;
-  const Context* find(ZoneId before, ZoneId now) const noexcept;
-  Context& open(ZoneId before, ZoneId now) noexcept;
-  void count(Context& context, ZoneId next, std::uint32_t milliseconds) noexcept;
-  void blend_in(const Context* context, Candidates& all) const noexcept;
+  // An entry in the table, which has no room for more bits.
+  struct Packed {
+    std::uint64_t
+        exit : 8;  // the first that leads to the successor, of those of the context's zone
+    std::uint64_t count_less_one : 16;
+    std::uint64_t milliseconds : 22;
+    std::uint64_t seen : 18;  // the last bits of steps()
+  };
+  static_assert(sizeof(Packed) == kTransitionSuccessorBytes);
+  static_assert(kMaxPortalsPerZone <= 1u << 8 && kMostCount <= 1u << 16);
+  static constexpr std::uint32_t kMillisecondBits = (1u << 22) - 1;
+  static_assert(kMostMilliseconds <= kMillisecondBits);
+
+  // Of a context in the table; `index` is the number of contexts where there is none.
+  struct Place {
+    std::size_t index = 0;
+    std::size_t first = 0;  // of its successors
+    std::size_t size = 0;
+  };
+
+  std::uint32_t way(ZoneId before, ZoneId now) const noexcept;
+  std::uint8_t exit_to(ZoneId now, ZoneId next) const noexcept;
+  Place at(std::size_t index) const noexcept;
+  Place find(ZoneId before, ZoneId now) const noexcept;
+  Place open(ZoneId before, ZoneId now) noexcept;
+  void close(const Place& place) noexcept;
+  void add(Place& place, const Packed& entry) noexcept;
+  void count(ZoneId before, ZoneId now, ZoneId next, std::uint32_t milliseconds) noexcept;
+  Packed pack(ZoneId now, const Entry& entry) const noexcept;
+  Entry entry_of(ZoneId now, const Packed& packed) const noexcept;
+  Context context(std::size_t index) const noexcept;
+  void blend_in(ZoneId now, const Place& place, Candidates& all) const noexcept;
   void add_geometry(ZoneId before, ZoneId now, Candidates& all) const noexcept;
 
   const ZoneGraph& graph_;
+  std::uint32_t exits_ = 0;  // of all zones
   std::size_t most_;
-  std::vector<Context> contexts_;
+  // Of each context, ascending by way.
+  std::vector<std::uint32_t> ways_;
+  std::vector<std::uint32_t> seen_;
+  std::vector<std::uint8_t> sizes_;
+  std::vector<Packed> entries_;  // of all contexts, one after the other
   std::uint32_t steps_ = 0;
 };
 

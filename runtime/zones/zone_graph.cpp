@@ -62,6 +62,11 @@ std::span<const Exit> ZoneGraph::exits(ZoneId zone) const noexcept {
   return {exits_.data() + first_exit_[zone], exits_.data() + first_exit_[zone + 1]};
 }
 
+ZoneId ZoneGraph::zone_of_exit(std::uint32_t number) const noexcept {
+  const auto after = std::ranges::upper_bound(first_exit_, number);
+  return static_cast<ZoneId>(after - first_exit_.begin() - 1);
+}
+
 ZoneId ZoneGraph::zone_at(Point2 point) const noexcept {
   ZoneId inside = kNoZone;
   ZoneId border = kNoZone;

@@ -57,6 +57,11 @@ class ZoneGraph {
   // The portals of a zone, in the order in which they were given.
   std::span<const Exit> exits(ZoneId zone) const noexcept;
 
+  // All exits are numbered, those of the first zone first. first_exit(): the number of a zone's
+  // first one; of zone_count(): how many there are. zone_of_exit(): whose a number is.
+  std::uint32_t first_exit(ZoneId zone) const noexcept { return first_exit_[zone]; }
+  ZoneId zone_of_exit(std::uint32_t number) const noexcept;
+
   // The zone that holds the point, as the packer assigns signatures: inside takes precedence over
   // on the border, then the lowest ZoneId; kNoZone outside of all.
   ZoneId zone_at(Point2 point) const noexcept;

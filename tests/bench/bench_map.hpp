@@ -18,8 +18,8 @@ namespace zonepack::bench {
 [[noreturn]] inline void fail(const std::string& what) { throw std::runtime_error(what); }
 
 inline Catalog open_map(const std::string& folder, PayloadMask payload) {
-  Result<Catalog> catalog = Catalog::open(folder, payload);
-  if (!catalog) fail(folder + ": no map: " + to_string(catalog.error().code));
+  auto catalog = Catalog::open(folder, payload);
+  if (!catalog) fail(folder + ": no map: " + catalog.error().message);
   return std::move(*catalog);
 }
 

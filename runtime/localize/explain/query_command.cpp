@@ -16,7 +16,7 @@
 #include "runtime/localize/camera/calibration.hpp"
 #include "runtime/localize/camera/image_file.hpp"
 #include "runtime/localize/explain/query_drawing.hpp"
-#include "runtime/localize/explain/reason_text.hpp"
+#include "runtime/localize/explain/query_reason.hpp"
 #include "runtime/localize/query/localizer.hpp"
 #include "runtime/localize/query/stored_map.hpp"
 #include "runtime/odometry/se2.hpp"
@@ -195,7 +195,7 @@ Outcome<void> query(const QueryArguments& arguments) {
                   prior.has_value(),
                   name_of(answer.result.nearest_zone)};
   answer.best_zone = name_of(answer.result.best_zone);
-  answer.why = reason_text(answer.result, answer.asked);
+  answer.why = query_reason(answer.result, answer.asked);
   std::fputs(text_of(answer).c_str(), arguments.json == "-" ? stderr : stdout);
   if (!arguments.json.empty()) {
     if (auto written = write_output(arguments.json, json_of(answer)); !written) return written;

@@ -11,12 +11,10 @@ namespace zonepack::localize {
 
 Outcome<StoredMap> open_stored_map(const std::string& folder) {
   constexpr PayloadMask kWanted = kCoreOnly | mask_of(fb::PayloadKind::Features);
-  std::string why;
-  Result<Catalog> catalog = Catalog::open(folder, kWanted, Catalog::kNoMost, &why);
+  auto catalog = Catalog::open(folder, kWanted);
   if (!catalog) {
-    return failure(folder + "/" + std::string(kManifestName) +
-                       ": cannot be used: " + (why.empty() ? reason_text(catalog.error()) : why) +
-                       "; give a folder that zonepack build wrote",
+    return failure(folder + "/" + std::string(kManifestName) + ": cannot be used: " +
+                       catalog.error().message + "; give a folder that zonepack build wrote",
                    catalog.error().code);
   }
   auto detector = parse_detector(catalog->detector, folder);

@@ -47,7 +47,7 @@ void CameraLoop::after_cycle(const FixMoment& moment, std::vector<PoseCorrection
   while (next_ < images_.size() &&
          images_[next_].stamp_ns + options_.latency_ns / 2 <= moment.now_ns) {
     look(images_[next_++], moment, fixes);
-    if (tell_) tell_(next_, images_.size());
+    if (tell_) tell_();
   }
   if (lost_ != nullptr) search(moment, fixes);
 }

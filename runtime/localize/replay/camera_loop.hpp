@@ -60,8 +60,8 @@ class CameraLoop final : public FixSource {
   // `images` in order of time.
   CameraLoop(std::vector<LoopImage> images, ImageFinder find, const Options& options);
 
-  // Called after each image with the number done and the number of all.
-  void on_progress(std::function<void(std::size_t, std::size_t)> tell) { tell_ = std::move(tell); }
+  // Called after each image.
+  void on_progress(std::function<void()> tell) { tell_ = std::move(tell); }
 
   // Called with each accepted result, with what is for drawing if the finder gave it.
   void on_fix(std::function<void(const QueryResult&)> tell) { tell_fix_ = std::move(tell); }
@@ -95,7 +95,7 @@ class CameraLoop final : public FixSource {
   Options options_;
   FeaturesInReach features_;
   LostLoop* lost_ = nullptr;
-  std::function<void(std::size_t, std::size_t)> tell_;
+  std::function<void()> tell_;
   std::function<void(const QueryResult&)> tell_fix_;
   std::size_t next_ = 0;
   std::vector<LoopView> views_;

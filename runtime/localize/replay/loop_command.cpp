@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/localize/replay/loop_command.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <iostream>
 #include <utility>
 
 #include "platform/atomic_file.hpp"
+#include "platform/base/counted.hpp"
 #include "platform/base/number_text.hpp"
 #include "platform/can_log.hpp"
+#include "platform/progress.hpp"
 #include "runtime/localize/camera/calibration.hpp"
 #include "runtime/localize/camera/image_file.hpp"
 #include "runtime/localize/camera/image_list.hpp"
@@ -42,24 +45,6 @@ constexpr const char* kProgram = "zoneloc replay";
 const char* speaker = kProgram;  // whose messages these are
 
 void note(const std::string& message) { std::cerr << speaker << ": " << message << '\n'; }
-
-// Says now and then how far the images are.
-class Progress {
- public:
-  void operator()(std::size_t done, std::size_t all) {
-    using Seconds = std::chrono::duration<double>;
-    const auto now = std::chrono::steady_clock::now();
-    if (now - told_ < std::chrono::seconds(2) || done == all) return;
-    told_ = now;
-    const double rate = static_cast<double>(done) / Seconds(now - begun_).count();
-    note(std::to_string(done) + " of " + std::to_string(all) + " images, " +
-         std::to_string(std::lround(rate)) + " a second, " +
-         std::to_string(std::lround(static_cast<double>(all - done) / rate)) + " s left");
-  }
-
- private:
-  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now(), told_ = begun_;
-};
 
 // Everything read before the run.
 struct LoopInputs {
@@ -226,7 +211,9 @@ Outcome<void> drive(const LoopArguments& arguments, const CameraTraits& camera_i
   CameraLoop loop(inputs->images, std::bind_front(&Camera::find, &camera),
                   {.latency_ns = std::llround(arguments.latency_s * 1e9),
                    .descriptor_bytes = inputs->map.detector.descriptor_bytes()});
-  loop.on_progress(Progress());
+  Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
+  progress.start("localizing", inputs->images.size(), "images");
+  loop.on_progress([&progress] { progress.advance(); });
   CalibrationWatch watch;
   localizer.options().keep_matches = true;
   loop.on_fix([&](const QueryResult& fix) { watch.add(inputs->camera, fix); });
@@ -247,6 +234,7 @@ Outcome<void> drive(const LoopArguments& arguments, const CameraTraits& camera_i
   input.fixes = &loop;
   input.observer = &heading;
   auto result = replay(std::move(input));
+  progress.finish(counted(loop.views().size(), "image"));
   tell_log_faults(arguments.can, log.summary());
   if (!result) return result.error();
   const std::string mismatch =

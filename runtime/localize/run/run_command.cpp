@@ -39,7 +39,7 @@ constexpr std::int64_t kFreshState_ns = 100'000'000;  // for the run's clock
 
 void say(const std::string& text) { std::cerr << kZoneloc << ": " << text << std::endl; }
 
-std::string socket_to_use(const RunArguments& arguments) {
+std::string socket_to_use(const CameraRunArguments& arguments) {
   if (!arguments.socket.empty()) return arguments.socket;
   const char* const from_environment = std::getenv("ZONED_SOCKET");
   if (from_environment != nullptr && *from_environment != '\0') return from_environment;
@@ -48,7 +48,7 @@ std::string socket_to_use(const RunArguments& arguments) {
 
 class CameraRun {
  public:
-  CameraRun(const RunArguments& arguments, const CameraModel& camera)
+  CameraRun(const CameraRunArguments& arguments, const CameraModel& camera)
       : arguments_(arguments),
         camera_(camera),
         socket_(socket_to_use(arguments)),
@@ -74,7 +74,7 @@ class CameraRun {
   void mind_silence(bool came);
   void report();
 
-  const RunArguments& arguments_;
+  const CameraRunArguments& arguments_;
   const CameraModel camera_;
   const std::string socket_;
   std::unique_ptr<ImageSource> source_;
@@ -345,7 +345,7 @@ Outcome<void> CameraRun::go() {
 
 }  // namespace
 
-int run_localizer(const RunArguments& arguments) {
+int run_localizer(const CameraRunArguments& arguments) {
   hold_signals();
   const auto camera = read_calibration(arguments.calibration);
   if (!camera) return report_failure(kZoneloc, camera.error());

@@ -8,7 +8,7 @@
 
 namespace zonepack::localize {
 
-struct RunArguments {
+struct CameraRunArguments {
   std::string calibration;  // file
   CameraChoice camera;
   std::string camera_text;        // as it was given, for people
@@ -21,6 +21,6 @@ struct RunArguments {
 // holds, and gives it to zoned, until SIGTERM, SIGINT or the end of the images. Images that are of
 // no use are named, and nothing is sent for them. When zoned ends, tries once a second to find
 // another. Returns the exit code: 0, or 1 when something could not begin or the camera broke.
-int run_localizer(const RunArguments& arguments);
+int run_localizer(const CameraRunArguments& arguments);
 
 }  // namespace zonepack::localize

@@ -5,7 +5,7 @@
 
 namespace zonepack::localize {
 
-void add_run(CLI::App& app, RunArguments& arguments, std::function<int()>& command) {
+void add_run(CLI::App& app, CameraRunArguments& arguments, std::function<int()>& command) {
   CLI::App& run = *app.add_subcommand(
       "run",
       "finds the robot's pose in a camera's images and gives it to a running zoned, until SIGTERM");

@@ -9,6 +9,6 @@
 namespace zonepack::localize {
 
 // The subcommand `run`, which fills `arguments` and sets `command`.
-void add_run(CLI::App& app, RunArguments& arguments, std::function<int()>& command);
+void add_run(CLI::App& app, CameraRunArguments& arguments, std::function<int()>& command);
 
 }  // namespace zonepack::localize

@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
                                        {"protocol", zonepack::kProtocolVersion, {}}}));
   app.require_subcommand(1);
   std::function<int()> command;
-  zonepack::localize::RunArguments run;
+  zonepack::localize::CameraRunArguments run;
   zonepack::localize::add_run(app, run, command);
   zonepack::localize::QueryArguments query;
   zonepack::localize::add_query(app, query, command);

@@ -88,8 +88,8 @@ TEST_P(MapMemory, IsNeverMoreThanWhatIsCharged) {
   const std::string path = folder.path().string();
   const std::size_t before = live_bytes();
 
-  const Result<Catalog> catalog = Catalog::open(path, kCoreOnly);
-  ASSERT_TRUE(catalog.ok()) << to_string(catalog.error().code);
+  const auto catalog = Catalog::open(path, kCoreOnly);
+  ASSERT_TRUE(catalog.ok()) << catalog.error().message;
   ASSERT_EQ(catalog->zones.size(), GetParam().rooms);
   const ZoneGraph graph = graph_of(*catalog);
   const std::vector<ZoneNeed> needs = needs_of(*catalog);

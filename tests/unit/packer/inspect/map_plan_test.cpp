@@ -104,7 +104,7 @@ TEST(MapPlan, PromisesTheBudgetUnderWhichTheRobotPins) {
   const RowOfRooms map;
   const test_support::TemporaryFolder folder;
   ASSERT_TRUE(write_file_atomically(folder / std::string(kManifestName), map.text()).ok());
-  const Result<Catalog> catalog = Catalog::open(folder.path().string(), kFeaturesOnly);
+  const auto catalog = Catalog::open(folder.path().string(), kFeaturesOnly);
   ASSERT_TRUE(catalog.ok());
   for (const ZoneId zone : {kA, kB, kC, kD}) {
     const ZoneId pinned[] = {zone};

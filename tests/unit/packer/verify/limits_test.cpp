@@ -89,10 +89,8 @@ class LimitRow : public testing::TestWithParam<Limit> {
 
   // All that the robot says of the map: at start, and when it loads the zone.
   std::string robot() {
-    std::string why;
-    const auto catalog =
-        Catalog::open(folder_.path().string(), kEveryPayload, Catalog::kNoMost, &why);
-    if (!catalog) return why;
+    const auto catalog = Catalog::open(folder_.path().string(), kEveryPayload);
+    if (!catalog) return catalog.error().message;
     std::vector<std::byte> slot(2 * kSlotBytes), buffer(kReadBufferBytes);
     void* place = slot.data();
     std::size_t room = slot.size();

@@ -27,14 +27,14 @@ std::string text_of(const std::string& path) {
   return text.str();
 }
 
-Calibration calibrate_scenario1(const Settings& settings) {
+WheelCalibration calibrate_scenario1(const Settings& settings) {
   const auto steps = read_wheel_steps(settings, kLog);
   EXPECT_TRUE(steps.ok()) << steps.error().message;
   const auto truth = read_truth(kTruth);
   EXPECT_TRUE(truth) << truth.error().message;
   const auto found = calibrate(*steps, *truth, settings.odometry.wheels);
   EXPECT_TRUE(found.ok()) << found.error().message;
-  return found ? *found : Calibration{};
+  return found ? *found : WheelCalibration{};
 }
 
 // The text with each line of the section odometry replaced by that of `yaml`, where it has one.
@@ -53,7 +53,7 @@ std::string pasted(std::string text, const std::string& yaml) {
 }
 
 TEST(CalibrateCommand, FindsWhatTheSimulatedRobotReallyIs) {
-  const Calibration c = calibrate_scenario1(load_settings(kConfig).settings);
+  const WheelCalibration c = calibrate_scenario1(load_settings(kConfig).settings);
   EXPECT_NEAR(c.fitted.left, 1.005, 3 * c.scale_sigma);
   EXPECT_NEAR(c.fitted.track_m, 0.413 * 1.01, 3 * c.track_sigma_m);
   EXPECT_LT(c.scale_sigma, 0.001);
@@ -64,20 +64,20 @@ TEST(CalibrateCommand, FindsWhatTheSimulatedRobotReallyIs) {
 }
 
 TEST(CalibrateCommand, WhatItPrintsCanBePastedAndThenChangesNothingMore) {
-  const Calibration first = calibrate_scenario1(load_settings(kConfig).settings);
+  const WheelCalibration first = calibrate_scenario1(load_settings(kConfig).settings);
   const std::string yaml = calibrated_yaml(first, load_settings(kConfig).settings.odometry);
   EXPECT_THAT(yaml, HasSubstr("  scale: 1.00"));
   EXPECT_THAT(yaml, HasSubstr("  track: 0.41"));
   const LoadedSettings after = parse_settings(pasted(text_of(kConfig), yaml), "a.yaml");
   ASSERT_THAT(after.faults, IsEmpty());
-  const Calibration second = calibrate_scenario1(after.settings);
+  const WheelCalibration second = calibrate_scenario1(after.settings);
   EXPECT_NEAR(second.fitted.left, 1, 1e-5);
   EXPECT_NEAR(second.fitted.track_m, first.fitted.track_m, 1e-5);
   EXPECT_NEAR(second.before.end_m, first.after.end_m, 1e-3);
 }
 
 TEST(CalibrateCommand, WritesTheKeysThatTheRobotHas) {
-  Calibration c;
+  WheelCalibration c;
   c.fitted = {.left = 1.01, .right = 0.99, .track_m = 0.6};
   c.sides_differ = true;
   OdometrySettings odometry;

@@ -31,7 +31,7 @@ TEST_P(HostileMap, IsRefusedBeforeMemoryIsReserved) {
     EXPECT_FALSE(catalog.ok());
     return;
   }
-  ASSERT_TRUE(catalog.ok()) << to_string(catalog.error().code);
+  ASSERT_TRUE(catalog.ok()) << catalog.error().message;
   const auto claims = check_claims(*catalog, true, ReadMode::kCached);
   ASSERT_FALSE(claims.ok());
   EXPECT_NE(claims.error().message.find(named), std::string::npos) << claims.error().message;
@@ -72,7 +72,10 @@ TEST(Manifest, WithAsManyBytesAsAreAllowedIsReadAndWithOneLessRefused) {
   EXPECT_TRUE(Catalog::open(folder.path().string(), kDefaultPayload, need).ok());
   const auto refused = Catalog::open(folder.path().string(), kDefaultPayload, need - 1);
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error(), (Error{ErrorCode::kTooLarge, static_cast<std::int64_t>(need)}));
+  EXPECT_EQ(refused.error().code, ErrorCode::kNoRoom);
+  EXPECT_EQ(refused.error().message, "reading it and holding its tables takes " +
+                                         format_byte_count(need) + ", over the " +
+                                         format_byte_count(need - 1) + " that there is for it");
 }
 
 }  // namespace

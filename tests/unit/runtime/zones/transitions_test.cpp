@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
+#include "runtime/pack_format/file/transitions_bytes.hpp"
 #include "tests/support/rooms.hpp"
 
 namespace zonepack {
@@ -124,20 +127,126 @@ TEST_F(TransitionsTest, CountsNothingThroughWalls) {
   EXPECT_TRUE(table.contexts().empty());
 }
 
-TEST_F(TransitionsTest, KeepsTheContextsSeenLastWhenFull) {
-  // 6 zones and 5 portals: 16 contexts, which is all that there can be: one for each zone and one
-  // for each way through a portal.
+TEST_F(TransitionsTest, TakesWhatIsCharged) {
+  // h has four portals: five contexts of four successors; c two: three of two; a, b, d and e one:
+  // two of one.
   EXPECT_EQ(table.capacity(), 16u);
-  EXPECT_EQ(Transitions::table_bytes(6, 5), 16 * sizeof(Transitions::Context));
-  EXPECT_EQ(Transitions::table_bytes(1'000'000, 5),
-            Transitions::kMostContexts * sizeof(Transitions::Context));
+  const MapCosts costs{.zone_slots = std::vector<std::uint32_t>(6, 1),
+                       .neighbours = {{kA, kH}, {kB, kH}, {kC, kH}, {kD, kH}, {kC, kE}}};
+  EXPECT_EQ(transitions_bytes(costs), 16u * 9 + (5 * 4 + 3 * 2 + 4 * 2 * 1) * 8u);
+  EXPECT_EQ(table.memory_bytes(), transitions_bytes(costs));
+  for (const ZoneId before : {kNoZone, kA, kB, kC, kD}) {
+    for (const ZoneId next : {kA, kB, kC, kD}) table.learn(before, kH, next, kSecond_ns);
+  }
+  for (const ZoneId before : {kH, kE}) {
+    for (const ZoneId next : {kH, kE}) table.learn(before, kC, next, kSecond_ns);
+  }
+  for (const ZoneId room : {kA, kB, kD}) table.learn(kH, room, kH, kSecond_ns);
+  table.learn(kC, kE, kC, kSecond_ns);
+  EXPECT_EQ(table.contexts().size(), 16u);
+  EXPECT_EQ(table.memory_bytes(), transitions_bytes(costs)) << "it grew";
+}
+
+// Rooms along a corridor, `rooms` of them from 1 on; the corridor is 0.
+ZoneGraph corridor(std::uint32_t rooms) {
+  std::vector<GraphZone> zones{{"a", box(0, 0, 4.0 * rooms, 2)}};
+  std::vector<GraphPortal> portals;
+  for (std::uint32_t i = 1; i <= rooms; ++i) {
+    std::string name = std::to_string(i);
+    name.insert(0, 5 - name.size(), '0');
+    const double x = 4.0 * (i - 1);
+    zones.push_back({"r" + name, box(x, 2, x + 4, 6)});
+    portals.push_back({0, i, {{x + 1, 2}, {x + 2, 2}}});
+  }
+  return ZoneGraph(std::move(zones), portals);
+}
+
+TEST(TransitionsOfACorridor, DropsItsRarestSuccessorForANewOne) {
+  const ZoneGraph long_one = corridor(9);
+  Transitions habits(long_one);
+  habits.learn(kNoZone, 0, 1, kSecond_ns);
+  for (ZoneId room = 1; room <= 8; ++room) {
+    for (ZoneId times = 0; times < (room == 3 || room == 6 ? 1 : 2); ++times) {
+      habits.learn(kNoZone, 0, room, room * kSecond_ns);
+    }
+  }
+  habits.learn(kNoZone, 0, 9, kSecond_ns);
+  const auto contexts = habits.contexts();
+  ASSERT_EQ(contexts.size(), 1u);
+  std::vector<ZoneId> zones;
+  for (const auto& entry : contexts[0].next) zones.push_back(entry.zone);
+  EXPECT_EQ(zones, (std::vector<ZoneId>{1, 2, 9, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(contexts[0].next[7].milliseconds, 8000u);
+  EXPECT_EQ(contexts[0].next[2].count, Transitions::kOne);
+  EXPECT_EQ(contexts[0].next[2].seen, habits.steps());
+  EXPECT_EQ(contexts[0].next[5].seen, habits.steps() - 5);  // 6, then 7, 7, 8, 8, 9
+}
+
+TEST(TransitionsOfACorridor, ForgetsTheContextNotSeenForLongestWhenItIsFull) {
+  // 8 corridors would be 8 * (257 + 256 * 2) contexts; a ring of 700 rooms has 2,100.
+  constexpr std::uint32_t kRooms = 700;
+  std::vector<GraphZone> zones;
+  std::vector<GraphPortal> portals;
+  for (std::uint32_t i = 0; i < kRooms; ++i) {
+    zones.push_back({std::to_string(1000 + i), box(4.0 * i, 0, 4.0 * i + 4, 4)});
+    portals.push_back({i, (i + 1) % kRooms, {{4.0 * i + 4, 1}, {4.0 * i + 4, 3}}});
+  }
+  const ZoneGraph ring(std::move(zones), portals);
+  Transitions habits(ring);
+  ASSERT_EQ(habits.capacity(), Transitions::kMostContexts);
+  const ByteCount memory = habits.memory_bytes();
+  EXPECT_EQ(memory, 2048 * 9u + std::min<ByteCount>(2048 * 8, 3 * 700 * 2) * 8u);
+  const auto go = [&](std::uint32_t i, std::uint32_t by) {
+    return habits.learn((i + kRooms - by) % kRooms, i, (i + by) % kRooms, kSecond_ns);
+  };
+  // Once round one way takes 1,400 contexts, the other way 700 more: 52 too many.
+  for (std::uint32_t i = 0; i < kRooms; ++i) ASSERT_TRUE(go(i, 1));
+  for (std::uint32_t i = 0; i < kRooms; ++i) ASSERT_TRUE(go(i, kRooms - 1));
+  EXPECT_EQ(habits.contexts().size(), 2048u);
+  EXPECT_EQ(habits.memory_bytes(), memory);
+  std::vector<ZoneId> gone;
+  const auto kept = habits.contexts();
+  for (ZoneId i = 0; i < kRooms; ++i) {
+    const ZoneId before = (i + kRooms - 1) % kRooms;
+    const bool here = std::ranges::any_of(
+        kept, [&](const auto& context) { return context.before == before && context.now == i; });
+    if (!here) gone.push_back(i);
+  }
+  ASSERT_EQ(gone.size(), 52u);
+  EXPECT_EQ(gone.back(), 51u) << "the first that were counted";
+  // What came after them in the table is whole.
+  for (ZoneId i = 60; i < 70; ++i) {
+    const Successors next = habits.after(i - 1, i);
+    EXPECT_EQ(next[0].zone, i + 1) << i;
+  }
+}
+
+TEST_F(TransitionsTest, KeepsCountsTimesAndAgesToTheBit) {
+  Transitions::Context context;
+  context.before = kA;
+  context.now = kH;
+  context.next[0] = {kD, Transitions::kMostCount, Transitions::kMostMilliseconds, 999};
+  context.next[1] = {kC, 1, 0, 1000};
+  context.next[2] = {kB, 65535, 1, 1000 - Transitions::kOldest};
+  table.continue_steps(1000);
+  ASSERT_TRUE(table.restore(context));
+  const auto contexts = table.contexts();
+  ASSERT_EQ(contexts.size(), 1u);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(contexts[0].next[i].zone, context.next[i].zone) << i;
+    EXPECT_EQ(contexts[0].next[i].count, context.next[i].count) << i;
+    EXPECT_EQ(contexts[0].next[i].milliseconds, context.next[i].milliseconds) << i;
+    EXPECT_EQ(contexts[0].next[i].seen, context.next[i].seen) << i;
+  }
+  EXPECT_EQ(contexts[0].next[3].zone, kNoZone);
 }
 
 TEST_F(TransitionsTest, RestoresWhatItHeld) {
   table.learn(kA, kH, kD, 10 * kSecond_ns);
   table.learn(kH, kD, kH, 5 * kSecond_ns);
   Transitions other(graph);
-  for (const auto& context : table.contexts()) EXPECT_TRUE(other.restore(context));
+  const auto contexts = table.contexts();
+  for (const auto& context : contexts) EXPECT_TRUE(other.restore(context));
   EXPECT_EQ(other.contexts().size(), 4u);
   for (const ZoneId before : {kA, kB}) {
     const Successors is = other.after(before, kH), was = table.after(before, kH);
@@ -148,7 +257,7 @@ TEST_F(TransitionsTest, RestoresWhatItHeld) {
       EXPECT_EQ(is[i].seconds, was[i].seconds);
     }
   }
-  EXPECT_FALSE(other.restore(table.contexts().front())) << "is there already";
+  EXPECT_FALSE(other.restore(contexts.front())) << "is there already";
 }
 
 TEST_F(TransitionsTest, RestoresNothingThatBreaksARule) {

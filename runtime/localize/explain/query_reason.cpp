@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/localize/explain/reason_text.hpp"
+#include "runtime/localize/explain/query_reason.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,7 @@ std::string features_text(int count) {
 
 }  // namespace
 
-std::string reason_text(const QueryResult& result, const QueryAsked& asked) {
+std::string query_reason(const QueryResult& result, const QueryAsked& asked) {
   const std::string needed = std::to_string(asked.needed);
   const std::string inliers = std::to_string(result.distinct);
   switch (result.reason) {

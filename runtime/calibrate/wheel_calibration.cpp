@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/calibrate/calibration.hpp"
+#include "runtime/calibrate/wheel_calibration.hpp"
 
 #include <cmath>
 #include <optional>
@@ -139,9 +139,9 @@ CalibrationErrors errors_with(const CalibrationValues& values, const std::vector
   return errors;
 }
 
-Outcome<Calibration> calibrate(const std::vector<WheelStep>& steps, const TruthTrack& truth,
-                               const WheelOdometrySettings& settings) {
-  Calibration result;
+Outcome<WheelCalibration> calibrate(const std::vector<WheelStep>& steps, const TruthTrack& truth,
+                                    const WheelOdometrySettings& settings) {
+  WheelCalibration result;
   const double track_m = settings.geometry.track_m * settings.geometry.slip_factor;
   result.nominal.track_m = track_m;
   const std::vector<Window> windows = windows_of(steps, truth, track_m);

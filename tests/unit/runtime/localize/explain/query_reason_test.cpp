@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/localize/explain/reason_text.hpp"
+#include "runtime/localize/explain/query_reason.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ TEST(ReasonText, NamesTheFiguresThatDecided) {
   asked.with_prior = true;
   asked.nearest_zone = "L1";
   EXPECT_EQ(
-      reason_text(result, asked),
+      query_reason(result, asked),
       "12 of 15 matches needed; the nearest signature (412 in L1, 0.8 m away) looks 94 degrees "
       "to the side");
 }
@@ -31,7 +31,7 @@ TEST(ReasonText, SaysHowMuchEvidenceIsMissing) {
   result.distinct = 18;
   result.visible = 120;
   result.evidence = 1.25;
-  EXPECT_EQ(reason_text(result, {}),
+  EXPECT_EQ(query_reason(result, {}),
             "18 matches agree, but no more and no more alike than chance gives where 120 features "
             "have a point of the map nearby (evidence 1.2 of 4.0 needed)");
 }
@@ -40,7 +40,7 @@ TEST(ReasonText, SaysSomethingForEveryReason) {
   for (std::size_t i = 0; i < kReasons; ++i) {
     QueryResult result;
     result.reason = static_cast<Reason>(i);
-    EXPECT_FALSE(reason_text(result, {}).empty()) << i;
+    EXPECT_FALSE(query_reason(result, {}).empty()) << i;
     EXPECT_STRNE(to_string(result.reason), "?") << i;
   }
 }

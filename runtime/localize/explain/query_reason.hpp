@@ -11,7 +11,7 @@ namespace zonepack::localize {
 
 inline constexpr double kDegreeInRad = std::numbers::pi / 180;
 
-// What was asked for, for the words of reason_text().
+// What was asked for, for the words of query_reason().
 struct QueryAsked {
   CameraModel camera;
   int image_width = 0, image_height = 0;
@@ -22,6 +22,6 @@ struct QueryAsked {
 
 // Why there is a pose or none, in one sentence, with the figures that decided: "12 of 15 matches
 // needed; the nearest signature (412 in L1, 0.8 m away) looks 94 degrees to the side".
-std::string reason_text(const QueryResult& result, const QueryAsked& asked);
+std::string query_reason(const QueryResult& result, const QueryAsked& asked);
 
 }  // namespace zonepack::localize

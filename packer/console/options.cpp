@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "packer/console/command_line.hpp"
+#include "packer/console/options.hpp"
 
 #include <algorithm>
 #include <cstddef>

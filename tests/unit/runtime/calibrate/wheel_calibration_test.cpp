@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/calibrate/calibration.hpp"
+#include "runtime/calibrate/wheel_calibration.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -45,20 +45,21 @@ Made make_drive(const CalibrationValues& values, double slip, int steps, double 
   return made;
 }
 
-Outcome<Calibration> outcome_of(const Made& made) {
+Outcome<WheelCalibration> outcome_of(const Made& made) {
   WheelOdometrySettings settings;
   settings.geometry.track_m = 0.4;
   return calibrate(made.steps, TruthTrack(made.truth), settings);
 }
 
-Calibration run(const Made& made) {
+WheelCalibration run(const Made& made) {
   const auto found = outcome_of(made);
   EXPECT_TRUE(found.ok()) << found.error().message;
-  return found ? *found : Calibration{};
+  return found ? *found : WheelCalibration{};
 }
 
-TEST(Calibration, FindsScaleAndTrackOfWheelsThatDoNotSlip) {
-  const Calibration c = run(make_drive({.left = 1.02, .right = 1.02, .track_m = 0.43}, 0, 5000));
+TEST(WheelCalibration, FindsScaleAndTrackOfWheelsThatDoNotSlip) {
+  const WheelCalibration c =
+      run(make_drive({.left = 1.02, .right = 1.02, .track_m = 0.43}, 0, 5000));
   EXPECT_FALSE(c.sides_differ);
   EXPECT_NEAR(c.fitted.left, 1.02, 1e-6);
   EXPECT_NEAR(c.fitted.right, 1.02, 1e-6);
@@ -68,8 +69,8 @@ TEST(Calibration, FindsScaleAndTrackOfWheelsThatDoNotSlip) {
   EXPECT_NEAR(c.seconds, 100, 2.1);
 }
 
-TEST(Calibration, DistinguishesTheSidesWhenTheyDiffer) {
-  const Calibration c =
+TEST(WheelCalibration, DistinguishesTheSidesWhenTheyDiffer) {
+  const WheelCalibration c =
       run(make_drive({.left = 1.01, .right = 0.99, .track_m = 0.41}, 0.001, 5000));
   EXPECT_TRUE(c.sides_differ);
   EXPECT_NEAR(c.fitted.left, 1.01, 1e-3);
@@ -78,8 +79,8 @@ TEST(Calibration, DistinguishesTheSidesWhenTheyDiffer) {
   EXPECT_LT(c.after.rmse_m * 5, c.before.rmse_m);
 }
 
-TEST(Calibration, TakesTheSidesToBeAlikeWhenTheirDifferenceMayBeSlip) {
-  const Calibration c =
+TEST(WheelCalibration, TakesTheSidesToBeAlikeWhenTheirDifferenceMayBeSlip) {
+  const WheelCalibration c =
       run(make_drive({.left = 1.005, .right = 1.005, .track_m = 0.404}, 0.003, 5000));
   EXPECT_FALSE(c.sides_differ);
   EXPECT_EQ(c.fitted.left, c.fitted.right);
@@ -90,7 +91,7 @@ TEST(Calibration, TakesTheSidesToBeAlikeWhenTheirDifferenceMayBeSlip) {
   EXPECT_LT(c.scale_sigma, 2e-3);
 }
 
-TEST(Calibration, RefusesADriveThatIsNotInformative) {
+TEST(WheelCalibration, RefusesADriveThatIsNotInformative) {
   const auto short_drive =
       outcome_of(make_drive({.left = 1, .right = 1, .track_m = 0.4}, 0, 250));  // 5 s at 0.5 m/s
   ASSERT_FALSE(short_drive);
@@ -102,14 +103,14 @@ TEST(Calibration, RefusesADriveThatIsNotInformative) {
   EXPECT_THAT(straight_drive.error().message, HasSubstr("m and 0."));
 }
 
-TEST(Calibration, DoesNotLookAcrossGapsNorBeyondTheTruth) {
+TEST(WheelCalibration, DoesNotLookAcrossGapsNorBeyondTheTruth) {
   Made made = make_drive({.left = 1.02, .right = 1.02, .track_m = 0.43}, 0, 6000);
   for (std::size_t i = 100; i < made.steps.size(); i += 500) {
     made.steps[i].left_m += 3;
     made.steps[i].known = false;
   }
   made.truth.resize(5000);
-  const Calibration c = run(made);
+  const WheelCalibration c = run(made);
   EXPECT_NEAR(c.fitted.left, 1.02, 1e-6);
   EXPECT_NEAR(c.fitted.track_m, 0.43, 1e-6);
 }

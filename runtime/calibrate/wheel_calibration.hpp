@@ -36,7 +36,7 @@ struct CalibrationErrors {
   double drift_percent = 0;  // end_m of the distance
 };
 
-struct Calibration {
+struct WheelCalibration {
   CalibrationValues nominal, fitted;
   bool sides_differ = false;    // left and right are distinguished: they differ by over 3 sigma
   double scale_sigma = 0;       // standard deviation of the mean of left and right
@@ -59,8 +59,8 @@ struct Calibration {
 inline constexpr double kCalibrationWindow_s = 2;
 inline constexpr double kLeastDistance_m = 10;
 inline constexpr double kLeastTurn_rad = 6.3;
-Outcome<Calibration> calibrate(const std::vector<WheelStep>& steps, const TruthTrack& truth,
-                               const WheelOdometrySettings& settings);
+Outcome<WheelCalibration> calibrate(const std::vector<WheelStep>& steps, const TruthTrack& truth,
+                                    const WheelOdometrySettings& settings);
 
 // Dead reckoning with these values against the truth, from the first step that it covers.
 CalibrationErrors errors_with(const CalibrationValues& values, const std::vector<WheelStep>& steps,
