@@ -149,7 +149,7 @@ void ZoneKeeper::see_to_likely(const Wishes& wishes, std::int64_t now_ns) noexce
     const ZoneId zone = likely[i];
     if (zone == loading_) loads_useful_ = !wishes.sure;
     if (loading_ != kNoZone || memory_.state(zone) != ZoneState::kAbsent) continue;
-    if (!wishes.sure && was_tried(zone)) continue;
+    if (!wishes.sure && (was_tried(zone) || !would_stay(zone, wishes))) continue;
     if (may_start(zone, Demand::kLikely, now_ns) &&
         (i < due ? make_colder_room(zone, *wishes.foresight)
                  : memory_.room().holds(needs_[zone])) &&
@@ -160,6 +160,26 @@ void ZoneKeeper::see_to_likely(const Wishes& wishes, std::int64_t now_ns) noexce
       return;
     }
   }
+}
+
+// Whether the zone would still be there when the robot enters it: not where a zone that it enters
+// before, and more surely, cannot be in memory with it and the robot's own.
+bool ZoneKeeper::would_stay(ZoneId zone, const Wishes& wishes) const noexcept {
+  const std::span<const Coming> coming = wishes.foresight->coming();
+  const auto listed = std::ranges::find(coming, zone, &Coming::zone);
+  if (listed == coming.end()) return true;
+  NeedSum all = memory_.room();
+  all.add(memory_.used_sum());
+  const auto fits = [&](ZoneId between) {
+    NeedSum sum;
+    for (const ZoneId one : {zone, between}) sum.add(needs_[one]);
+    if (wishes.with_own && !wishes.zones.empty()) sum.add(needs_[wishes.zones.front()]);
+    return sum.slots <= all.slots && sum.signatures <= all.signatures;
+  };
+  return std::ranges::all_of(coming, [&](const Coming& other) {
+    return other.zone == zone || other.seconds >= listed->seconds || other.share < listed->share ||
+           fits(other.zone);
+  });
 }
 
 // Whether the zone fits, if need be once zones are evicted that are worth less: the least worth

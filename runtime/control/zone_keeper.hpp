@@ -110,6 +110,7 @@ class ZoneKeeper {
   void see_to(std::size_t place, const Wishes& wishes, std::int64_t now_ns) noexcept;
   void see_to_likely(const Wishes& wishes, std::int64_t now_ns) noexcept;
   bool make_colder_room(ZoneId zone, const Foresight& foresight) noexcept;
+  bool would_stay(ZoneId zone, const Wishes& wishes) const noexcept;
   bool may_start(ZoneId zone, Demand demand, std::int64_t now_ns) noexcept;
   void keep_pinned(std::int64_t now_ns) noexcept;
   Result<std::size_t> admit(ZoneId zone, Purpose purpose) noexcept;

@@ -300,6 +300,20 @@ TEST_F(LikelyZones, ProtectNothingFromWhatIsNeeded) {
   EXPECT_EQ(taken(), (Log{"evicted 1", "load_started 2"}));
 }
 
+// 1 comes before 2. It and the robot's own zone fill the memory, so that 2 would be evicted again.
+TEST_F(LikelyZones, AreNotLoadedWhereTheyCouldNotStayUntilTheyCome) {
+  hold(0);
+  foresight.follow(std::vector<ZoneId>{1, 2}, kNoZone, 0, nullptr);
+  keep({0, 2}, 1, false);
+  EXPECT_EQ(taken(), Log{});
+  keep({0, 2}, 1, true);
+  EXPECT_EQ(taken(), Log{"load_started 2"}) << "but along a route";
+  make(12, {});
+  hold(0);
+  keep({0, 2}, 1, false);
+  EXPECT_EQ(taken(), Log{"load_started 2"}) << "there is room for all three";
+}
+
 TEST_F(LikelyZones, EvictNothingWhileFrozen) {
   hold(5);
   hold(0);
