@@ -97,7 +97,7 @@ drive() {  # RUN MAP BUDGET LIMIT_MIB
     --record "$run/run.zpr" >"$run/zoned.txt" 2>&1 &
   zoned=$!
   for _ in $(seq 250); do [ -S "$ZONED_SOCKET" ] && break; sleep 0.02; done
-  in_robot 500 "$work/zoneloc" run --calibration "$mission/calibration.yaml" --camera "folder:$mission@1" \
+  in_robot 250 "$work/zoneloc" run --calibration "$mission/calibration.yaml" --camera "folder:$mission@1" \
     --json "$run/zoneloc.json" >"$run/zoneloc.txt" 2>&1 &
   zoneloc=$!
   wait $zoned 2>/dev/null || code=$?
@@ -111,7 +111,8 @@ drive() {  # RUN MAP BUDGET LIMIT_MIB
   leave
   "$bin/recorded_fixes" "$run/run.zpr" >"$run/fixes.txt" 2>"$run/fixes.err" || true
 }
-# Who is killed first is as their service units have it, all 500 higher: zoned -500, others 0. Lowering needs a privilege.
+# Who is killed first is as their service units have it, all 500 higher: zoned -500, zoneloc -250, others 0. Lowering needs
+# a privilege.
 in_robot() {  # OOM_SCORE COMMAND...
   echo "$BASHPID" >"$group/robot/cgroup.procs"
   [ "$pressure" = "$group/robot" ] || [ -z "$pressure" ] || echo "$BASHPID" >"$pressure/cgroup.procs"
