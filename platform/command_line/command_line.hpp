@@ -10,7 +10,8 @@
 namespace zonepack {
 
 // Parses the command line; options may stand before the subcommand or after it, whether they are
-// the program's or the subcommand's. Throws CLI::ParseError.
+// the program's or the subcommand's. Throws CLI::ParseError; of an unknown subcommand or option it
+// says so before it misses anything, with the nearest that there is.
 void parse_command_line(CLI::App& app, int argc, const char* const* argv);
 
 // Adds an Examples section to the end of the help. A command that is too long for a line goes on in

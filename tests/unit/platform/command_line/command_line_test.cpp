@@ -71,6 +71,37 @@ TEST(CommandLine, RefusesWhatNoneOfThemKnows) {
   EXPECT_THROW(program.parse({"--fast", "run"}), CLI::ParseError);
 }
 
+std::string refusal_of(const std::vector<const char*>& words) {
+  Program program;
+  try {
+    program.parse(words);
+  } catch (const CLI::ParseError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CommandLine, NamesTheNearestOfWhatItKnows) {
+  EXPECT_EQ(refusal_of({"rum"}), "unknown command \"rum\"; did you mean \"run\"? Known: run, stop");
+  EXPECT_EQ(refusal_of({"--loud", "--socket", "S", "walk"}),
+            "unknown command \"walk\"; known: run, stop");
+  EXPECT_EQ(refusal_of({"run", "--spede", "3"}),
+            "unknown option --spede of run; did you mean --speed?");
+  EXPECT_EQ(refusal_of({"run", "--spede=3"}),
+            "unknown option --spede of run; did you mean --speed?");
+  EXPECT_EQ(refusal_of({"--sokcet", "S", "run"}),
+            "unknown option --sokcet of run; did you mean --socket?");
+  EXPECT_EQ(refusal_of({"--sokcet", "S"}), "unknown option --sokcet; did you mean --socket?");
+  // Before it misses PLACE.
+  EXPECT_EQ(refusal_of({"stop", "--xylophone"}), "unknown option --xylophone of stop");
+}
+
+TEST(CommandLine, TakesNoValueForAnUnknownWord) {
+  EXPECT_EQ(refusal_of({"run", "--speed", "--sokcet"}), "");
+  EXPECT_EQ(refusal_of({"--speed", "-3", "run"}), "");
+  EXPECT_EQ(refusal_of({"stop", "--", "--here"}), "");
+}
+
 TEST(CommandLine, EndsHelpWithExamples) {
   CLI::App app("a program", "program");
   add_examples(app, {"program run", "program run \\\n  --speed 3"});
