@@ -18,7 +18,7 @@ ARROWS = {
     "platform/linux": "platform platform/base",
     "platform/linux/gpiod": "platform",
     "platform/version": "",
-    "platform/command_line": "",
+    "platform/command_line": "platform/base",
 
     "runtime/pack_format": "platform/base",
     "runtime/pack_format/file": "platform platform/base runtime/pack_format",
