@@ -7,22 +7,22 @@ namespace zonepack {
 namespace {
 
 thread_local bool watching = false;
-thread_local std::uint64_t count = 0;
+thread_local std::uint64_t allocated = 0;
 
 }  // namespace
 
 AllocationWatch::AllocationWatch() noexcept {
-  count = 0;
+  allocated = 0;
   watching = true;
 }
 
 AllocationWatch::~AllocationWatch() { watching = false; }
 
-std::uint64_t AllocationWatch::allocations() const noexcept { return count; }
+std::uint64_t AllocationWatch::allocations() const noexcept { return allocated; }
 
 void allocation_watch::note() noexcept {
   if (!watching) return;
-  ++count;
+  ++allocated;
 #ifdef ZONEPACK_ABORT_ON_ALLOCATION
   watching = false;
   ZP_REQUIRE(!"a thread that must not allocate did");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "packer/encode/bit_writer.hpp"
+#include "runtime/pack_format/column.hpp"
 
 namespace zonepack::packer {
 namespace {

@@ -74,6 +74,10 @@ void refuse_command(const CLI::App& app, const std::string& word) {
 // program, options, values. Which words are values is only known of options that take a fixed
 // number of them; after any other, a word without dashes is nobody's business here.
 void refuse_unknown(const CLI::App& app, const CLI::App& command, const Words& words) {
+  const auto asks_for_help = [](const std::string& word) {
+    return word == "--help" || word == "-h";
+  };
+  if (std::ranges::any_of(words, asks_for_help)) return;
   bool may_be_value = &command != &app || commands_of(app).empty();
   for (std::size_t i = &command == &app ? 1 : 2; i < words.size(); ++i) {
     const std::string word = words[i];

@@ -89,11 +89,11 @@ Transitions::Transitions(const ZoneGraph& graph)
     : graph_(graph), exits_(graph.first_exit(static_cast<ZoneId>(graph.zone_count()))) {
   TransitionRoom room;
   for (ZoneId zone = 0; zone < graph.zone_count(); ++zone) room.add(graph.exits(zone).size());
-  most_ = room.contexts();
+  most_ = static_cast<std::size_t>(room.contexts());
   ways_.reserve(most_);
   seen_.reserve(most_);
   sizes_.reserve(most_);
-  entries_.reserve(room.successors());
+  entries_.reserve(static_cast<std::size_t>(room.successors()));
 }
 
 ByteCount Transitions::memory_bytes() const noexcept {

@@ -40,7 +40,9 @@ class TransitionRoom {
   std::uint64_t successors_ = 0;
 };
 
-// Of the zones and neighbours of a map. Memory: 4 bytes a zone while it counts.
+// Of the zones and neighbours of a map.
+//
+// Memory: 4 bytes a zone while it counts.
 ByteCount transitions_bytes(const MapCosts& costs);
 
 }  // namespace zonepack

@@ -96,6 +96,13 @@ TEST(CommandLine, NamesTheNearestOfWhatItKnows) {
   EXPECT_EQ(refusal_of({"stop", "--xylophone"}), "unknown option --xylophone of stop");
 }
 
+TEST(CommandLine, HelpsWhoeverAsks) {
+  for (const char* const help : {"--help", "-h"}) {
+    Program program;
+    EXPECT_THROW(program.parse({"rum", "--sokcet", help}), CLI::CallForHelp);
+  }
+}
+
 TEST(CommandLine, TakesNoValueForAnUnknownWord) {
   EXPECT_EQ(refusal_of({"run", "--speed", "--sokcet"}), "");
   EXPECT_EQ(refusal_of({"--speed", "-3", "run"}), "");

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "runtime/state/state_store.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -10,7 +12,6 @@
 #include <sstream>
 
 #include "runtime/state/state_saver.hpp"
-#include "runtime/state/state_store.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace zonepack {

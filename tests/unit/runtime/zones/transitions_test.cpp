@@ -232,7 +232,7 @@ TEST_F(TransitionsTest, KeepsCountsTimesAndAgesToTheBit) {
   ASSERT_TRUE(table.restore(context));
   const auto contexts = table.contexts();
   ASSERT_EQ(contexts.size(), 1u);
-  for (int i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(contexts[0].next[i].zone, context.next[i].zone) << i;
     EXPECT_EQ(contexts[0].next[i].count, context.next[i].count) << i;
     EXPECT_EQ(contexts[0].next[i].milliseconds, context.next[i].milliseconds) << i;
