@@ -57,8 +57,8 @@ void close_gaps(MapImage& image, Cell value, const May& may) {
 
 Slice::Slice(FloorHeights floor, SliceHeights heights, double cell_m)
     : floor_(std::move(floor)), heights_(heights), cell_m_(cell_m) {
-  constexpr auto kMost = static_cast<std::int64_t>(kMostServedCells);
-  for (box_ = cells_around_floor(); box_.width() > kMost / box_.height();
+  constexpr auto kMostCells = static_cast<std::int64_t>(kMostServedCells);
+  for (box_ = cells_around_floor(); box_.width() > kMostCells / box_.height();
        box_ = cells_around_floor()) {
     cell_m_ *= 2;
     if (cell_m_ <= kCoarsest_m) continue;

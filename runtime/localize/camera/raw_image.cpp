@@ -10,13 +10,13 @@
 namespace zonepack::localize {
 namespace {
 
-using Row = void (*)(std::span<const std::uint8_t>, std::span<std::uint8_t>);
+using RowConversion = void (*)(std::span<const std::uint8_t>, std::span<std::uint8_t>);
 
 void copy_row(std::span<const std::uint8_t> from, std::span<std::uint8_t> to) noexcept {
   std::copy_n(from.begin(), to.size(), to.begin());
 }
 
-Row row_of(PixelFormat format) noexcept {
+RowConversion row_of(PixelFormat format) noexcept {
   switch (format) {
     case PixelFormat::kRgb:
       return grey_of_rgb;
@@ -67,7 +67,7 @@ Outcome<void> to_grey(const RawImage& raw, const std::string& name, GreyImage& i
   into.width = raw.width;
   into.height = raw.height;
   into.pixels.resize(width * height);
-  const Row convert = row_of(raw.format);
+  const RowConversion convert = row_of(raw.format);
   const std::span from(reinterpret_cast<const std::uint8_t*>(raw.bytes.data()), raw.bytes.size());
   for (std::size_t y = 0; y < height; ++y) {
     convert(from.subspan(y * raw.row_bytes, least),

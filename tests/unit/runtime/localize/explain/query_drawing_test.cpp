@@ -64,7 +64,7 @@ class DrawnPlace : public testing::Test {
       test_support::write_bytes(folder / name, bytes);
     }
     catalog = *Catalog::open(folder.path().string(), kDefaultPayload);
-    for (const SignatureId id : {1u, 2u}) {
+    for (const SignatureId id : {1, 2}) {
       MapFeatures& one = features.emplace_back();
       one.id = id;
       one.T_map_base = lift({id == 1 ? 2.0 : 6.0, 2, 0}, 0);
