@@ -107,8 +107,8 @@ bool joined(const ZoneGraph& graph, ZoneId a, ZoneId b) noexcept {
   return std::any_of(exits.begin(), exits.end(), [b](const Exit& exit) { return exit.to == b; });
 }
 
-// Contexts are told apart by how the robot came: the number of the first exit of `now` that leads
-// back, and for those of order 1, which come after these, the zone.
+// The key of a context: the number of the first exit of `now` that leads back to `before`. Those of
+// order 1 have `now`, counted on after the exits.
 std::uint32_t Transitions::way(ZoneId before, ZoneId now) const noexcept {
   return before == kNoZone ? exits_ + now : graph_.first_exit(now) + exit_to(now, before);
 }
