@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "packer/record/append_value.hpp"
 #include "runtime/pack_format/block_index.hpp"
 
 namespace zonepack::packer {
@@ -153,9 +154,7 @@ class SignatureDecoder {
     *row_bytes = static_cast<std::uint32_t>(channels.size() * 4);
     for (std::uint32_t row = 0; row < record.rows(); ++row) {
       for (const ColumnView& channel : channels) {
-        const std::uint32_t bits = channel.bits_at(row);
-        const auto bytes = std::as_bytes(std::span(&bits, 1));
-        out.insert(out.end(), bytes.begin(), bytes.end());
+        append_value(out, channel.bits_at(row));
       }
     }
   }

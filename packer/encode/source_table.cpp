@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "packer/encode/voxel_encoder.hpp"
+#include "packer/record/append_value.hpp"
 #include "runtime/pack_format/block_index.hpp"
 
 namespace zonepack::packer {
@@ -70,12 +71,6 @@ SourceColumn values_column(fb::Field field, const std::vector<T>& values) {
   return column;
 }
 
-template <typename T>
-void append(Bytes& out, const T& value) {
-  const auto bytes = std::as_bytes(std::span(&value, 1));
-  out.insert(out.end(), bytes.begin(), bytes.end());
-}
-
 SourceTable features_table(std::uint32_t signature, Features& features) {
   SourceTable table{
       signature, fb::Part::Features, 0, static_cast<std::uint32_t>(features.count), {}, {}, 0, {}};
@@ -102,12 +97,12 @@ SourceTable features_table(std::uint32_t signature, Features& features) {
 
 SourceTable scan_table(std::uint32_t signature, Scan scan) {
   Bytes info;
-  append(info, scan.format);
+  append_value(info, scan.format);
   for (const float v : {scan.range_min, scan.range_max, scan.angle_min, scan.angle_max,
                         scan.angle_increment, scan.max_points}) {
-    append(info, v);
+    append_value(info, v);
   }
-  for (const float v : scan.local_transform) append(info, v);
+  for (const float v : scan.local_transform) append_value(info, v);
   SourceTable table = matrix_table(signature, fb::Part::Scan, std::move(scan.data), true);
   const auto size = static_cast<std::uint32_t>(info.size());
   table.attributes.push_back(encode_raw(fb::Field::Info, info, size));
@@ -140,7 +135,7 @@ EncodedColumn encode_blocks(const SourceColumn& column, std::uint32_t first, std
   EncodedColumn out{column.field, fb::ColumnCodec::Planes, 0, column.planes, 0, {}};
   const std::uint32_t begin = first == 0 ? 0 : column.ends[first - 1];
   for (std::uint32_t i = first; i < first + count; ++i) {
-    append(out.bytes, static_cast<std::uint16_t>(column.ends[i] - begin));
+    append_value(out.bytes, static_cast<std::uint16_t>(column.ends[i] - begin));
   }
   const std::uint32_t end = count == 0 ? begin : column.ends[first + count - 1];
   out.bytes.insert(out.bytes.end(), column.data.begin() + begin, column.data.begin() + end);
@@ -211,12 +206,12 @@ std::vector<SourceTable> tables_of(SignatureRecord& record, std::uint32_t ordina
   for (std::size_t i = 0; i < record.global_descriptors.size(); ++i) {
     GlobalDescriptor& descriptor = record.global_descriptors[i];
     Bytes info;
-    append(info, descriptor.type);
-    append(info, std::int32_t{descriptor.info.has_value()});
+    append_value(info, descriptor.type);
+    append_value(info, std::int32_t{descriptor.info.has_value()});
     if (descriptor.info) {
-      append(info, descriptor.info->rows);
-      append(info, descriptor.info->cols);
-      append(info, descriptor.info->type);
+      append_value(info, descriptor.info->rows);
+      append_value(info, descriptor.info->cols);
+      append_value(info, descriptor.info->type);
       info.insert(info.end(), descriptor.info->data.begin(), descriptor.info->data.end());
     }
     tables.push_back(
@@ -229,8 +224,8 @@ std::vector<SourceTable> tables_of(SignatureRecord& record, std::uint32_t ordina
     const Grid& grid = *record.grid;
     SourceTable info{ordinal, fb::Part::GridInfo, 0, 0, {}, {}, 0, {}};
     Bytes values;
-    append(values, grid.cell_size);
-    for (const float v : grid.view_point) append(values, v);
+    append_value(values, grid.cell_size);
+    for (const float v : grid.view_point) append_value(values, v);
     info.attributes.push_back(encode_raw(fb::Field::Info, values, 16));
     tables.push_back(std::move(info));
     const std::pair<fb::Part, std::optional<Matrix>*> parts[] = {

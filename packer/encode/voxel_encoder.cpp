@@ -9,6 +9,7 @@
 
 #include "packer/encode/bit_writer.hpp"
 #include "packer/encode/voxel_form.hpp"
+#include "packer/record/append_value.hpp"
 #include "platform/base/require.hpp"
 #include "runtime/pack_format/column.hpp"
 #include "runtime/pack_format/voxel_block.hpp"
@@ -173,7 +174,7 @@ class PlaneEncoder {
     choice_ = as_before ? before_.choice : best_.choice;
     const std::size_t constants = constants_of(choice_);
     if (constants == 0) return;
-    for (std::size_t i = 0; i < constants; ++i) put_u32(best_.constants[i], out_);
+    for (std::size_t i = 0; i < constants; ++i) append_value(out_, best_.constants[i]);
     if (as_before) {
       codes_ = before_.codes;
       return;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "packer/encode/bit_writer.hpp"
+#include "packer/record/append_value.hpp"
 #include "runtime/pack_format/column.hpp"
 
 namespace zonepack::packer {
@@ -173,19 +174,19 @@ ListForm smallest_form(const VoxelList& list, const VoxelCensus& census) {
 void write_form(const ListForm& form, const VoxelList& list, Bytes& out) {
   switch (form.form) {
     case VoxelForm::kConstant:
-      put_u32(form.base, out);
+      append_value(out, form.base);
       return;
     case VoxelForm::kRaw:
       break;
     case VoxelForm::kPacked:
       put_u8(static_cast<std::size_t>(form.order), out);
       put_u8(form.bits, out);
-      put_u32(form.base, out);
+      append_value(out, form.base);
       break;
     case VoxelForm::kScaled:
       put_u8(form.fraction, out);
       put_u8(form.bits, out);
-      put_u32(form.base, out);
+      append_value(out, form.base);
       break;
     case VoxelForm::kDictionary: {
       VoxelCensus census(list.all());
@@ -193,7 +194,7 @@ void write_form(const ListForm& form, const VoxelList& list, Bytes& out) {
       for (std::size_t i = 0; i < census.size(); ++i) names.push_back(census.name(i));
       std::ranges::sort(names);
       put_u8(names.size() - 1, out);
-      for (const std::uint32_t name : names) put_u32(name, out);
+      for (const std::uint32_t name : names) append_value(out, name);
       write_values(list, form.bits, out, [&names](std::uint32_t value) {
         return static_cast<std::uint32_t>(std::ranges::lower_bound(names, value) - names.begin());
       });
@@ -218,10 +219,5 @@ void write_form(const ListForm& form, const VoxelList& list, Bytes& out) {
 }
 
 void put_u8(std::size_t value, Bytes& out) { out.push_back(static_cast<std::byte>(value)); }
-
-void put_u32(std::uint32_t value, Bytes& out) {
-  const auto bytes = std::as_bytes(std::span(&value, 1));
-  out.insert(out.end(), bytes.begin(), bytes.end());
-}
 
 }  // namespace zonepack::packer

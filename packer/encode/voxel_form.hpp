@@ -90,8 +90,7 @@ ListForm smallest_form(const VoxelList& list, const VoxelCensus& census);
 // Appends what the form says of itself, and the list in it.
 void write_form(const ListForm& form, const VoxelList& list, Bytes& out);
 
-// Appends a number, low byte first.
+// Appends a number of one byte.
 void put_u8(std::size_t value, Bytes& out);
-void put_u32(std::uint32_t value, Bytes& out);
 
 }  // namespace zonepack::packer

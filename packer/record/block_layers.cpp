@@ -4,19 +4,15 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "packer/record/append_value.hpp"
+
 namespace zonepack::packer {
 namespace {
 
 enum class Cell : std::uint8_t { kNull, kInteger, kReal, kText, kBlob };
 
-template <typename T>
-void put(Bytes& out, T value) {
-  const auto bytes = std::as_bytes(std::span(&value, 1));
-  out.insert(out.end(), bytes.begin(), bytes.end());
-}
-
 void put_bytes(Bytes& out, std::span<const std::byte> bytes) {
-  put(out, static_cast<std::uint16_t>(bytes.size()));
+  append_value(out, static_cast<std::uint16_t>(bytes.size()));
   out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
@@ -26,19 +22,19 @@ void put_text(Bytes& out, const std::string& text) {
 
 void put_cell(Bytes& out, const TableCell& cell) {
   if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
-    put(out, Cell::kInteger);
-    put(out, *integer);
+    append_value(out, Cell::kInteger);
+    append_value(out, *integer);
   } else if (const auto* real = std::get_if<double>(&cell)) {
-    put(out, Cell::kReal);
-    put(out, *real);
+    append_value(out, Cell::kReal);
+    append_value(out, *real);
   } else if (const auto* text = std::get_if<std::string>(&cell)) {
-    put(out, Cell::kText);
+    append_value(out, Cell::kText);
     put_text(out, *text);
   } else if (const auto* blob = std::get_if<Bytes>(&cell)) {
-    put(out, Cell::kBlob);
+    append_value(out, Cell::kBlob);
     put_bytes(out, *blob);
   } else {
-    put(out, Cell::kNull);
+    append_value(out, Cell::kNull);
   }
 }
 
@@ -95,20 +91,20 @@ class Reader {
 
 Bytes write_block_layers(const BlockLayers& layers) {
   Bytes out;
-  put(out, layers.block_size_m);
+  append_value(out, layers.block_size_m);
   std::uint8_t count = 0;
   for (const auto& layer : layers.layers)
     count = static_cast<std::uint8_t>(count + layer.has_value());
-  put(out, count);
+  append_value(out, count);
   for (std::size_t i = 0; i < layers.layers.size(); ++i) {
     if (!layers.layers[i]) continue;
     const BlockLayerTables& tables = *layers.layers[i];
-    put(out, static_cast<std::uint8_t>(i));
+    append_value(out, static_cast<std::uint8_t>(i));
     put_text(out, tables.metadata_sql);
     put_text(out, tables.data_sql);
     const std::size_t columns = tables.metadata.empty() ? 0 : tables.metadata.front().size();
-    put(out, static_cast<std::uint8_t>(columns));
-    put(out, static_cast<std::uint16_t>(tables.metadata.size()));
+    append_value(out, static_cast<std::uint8_t>(columns));
+    append_value(out, static_cast<std::uint16_t>(tables.metadata.size()));
     for (const auto& row : tables.metadata) {
       for (const TableCell& cell : row) put_cell(out, cell);
     }

@@ -172,7 +172,8 @@ bool ZoneKeeper::would_stay(ZoneId zone, const Wishes& wishes) const noexcept {
   all.add(memory_.used_sum());
   const auto fits = [&](ZoneId between) {
     NeedSum sum;
-    for (const ZoneId one : {zone, between}) sum.add(needs_[one]);
+    sum.add(needs_[zone]);
+    sum.add(needs_[between]);
     if (wishes.with_own && !wishes.zones.empty()) sum.add(needs_[wishes.zones.front()]);
     return sum.slots <= all.slots && sum.signatures <= all.signatures;
   };

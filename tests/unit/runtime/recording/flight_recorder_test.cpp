@@ -9,7 +9,6 @@
 #include <random>
 
 #include "runtime/recording/flight_names.hpp"
-#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/runtime/recording/recorded_drive.hpp"
 
 namespace zonepack {
@@ -19,23 +18,8 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing_support::text_of;
 
-class FlightRecorderTest : public testing::Test {
+class FlightRecorderTest : public testing_support::ReplaysADrive {
  protected:
-  std::string path(const std::string& name) const { return folder / name; }
-
-  std::optional<RecordedRunResult> replay(const std::string& recording) {
-    auto reader = RecordingReader::open(recording);
-    if (!reader) {
-      fault = reader.error().message;
-      return std::nullopt;
-    }
-    auto result = replay_recording(*reader, drive.run(), path("again.jsonl"));
-    note = reader->note();
-    if (result) return std::move(*result);
-    fault = result.error().message;
-    return std::nullopt;
-  }
-
   // A block that hardly compresses, so that few fill the ring.
   void append(FlightRecorder& flight, std::uint64_t cycle) {
     if (flight.wants_segment()) {
@@ -61,9 +45,6 @@ class FlightRecorderTest : public testing::Test {
     flight.append(sealed, cycle + 1);
   }
 
-  test_support::TemporaryFolder folder;
-  testing_support::RecordedDrive drive;
-  std::string fault, note;
   std::uint32_t map = 1;  // in use
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -24,6 +26,7 @@
 #include "runtime/run/run_files.hpp"
 #include "runtime/run/run_inputs.hpp"
 #include "tests/support/sample_catalog.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace zonepack::testing_support {
 
@@ -225,6 +228,30 @@ class RecordedDrive {
   std::string text_;
   RecordedRun run_;
   MapTerms terms_;
+};
+
+// A drive, a folder, and what replaying a recording of the drive there gives.
+class ReplaysADrive : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return folder / name; }
+
+  // Null: `fault` says why. Its events are in again.jsonl.
+  std::optional<RecordedRunResult> replay(const std::string& recording) {
+    auto reader = RecordingReader::open(recording);
+    if (!reader) {
+      fault = reader.error().message;
+      return std::nullopt;
+    }
+    auto result = replay_recording(*reader, drive.run(), path("again.jsonl"));
+    note = reader->note();
+    if (result) return std::move(*result);
+    fault = result.error().message;
+    return std::nullopt;
+  }
+
+  test_support::TemporaryFolder folder;
+  RecordedDrive drive;
+  std::string fault, note;
 };
 
 }  // namespace zonepack::testing_support

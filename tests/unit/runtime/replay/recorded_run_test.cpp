@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/runtime/recording/recorded_drive.hpp"
 
 namespace zonepack {
@@ -14,32 +13,15 @@ namespace {
 using testing::HasSubstr;
 using testing_support::text_of;
 
-class RecordedRunTest : public testing::Test {
+class RecordedRunTest : public testing_support::ReplaysADrive {
  protected:
-  std::string path(const std::string& name) const { return folder / name; }
-
   void record(std::uint64_t seed) {
     auto file = RecordingFile::create(path("run.zpr"), drive.preface());
     ASSERT_TRUE(file.ok());
     live_hash = drive.drive(seed, path("live.jsonl"), file->get(), nullptr);
   }
 
-  std::optional<RecordedRunResult> replay(const std::string& recording) {
-    auto reader = RecordingReader::open(recording);
-    if (!reader) {
-      fault = reader.error().message;
-      return std::nullopt;
-    }
-    auto result = replay_recording(*reader, drive.run(), path("again.jsonl"));
-    note = reader->note();
-    if (result) return std::move(*result);
-    fault = result.error().message;
-    return std::nullopt;
-  }
-
-  test_support::TemporaryFolder folder;
-  testing_support::RecordedDrive drive;
-  std::string live_hash, fault, note;
+  std::string live_hash;
 };
 
 TEST_F(RecordedRunTest, GivesTheSameEventsByteForByte) {
