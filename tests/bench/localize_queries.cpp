@@ -149,6 +149,7 @@ int main(int argc, char** argv) {
   std::vector<std::vector<double>> stage_ms(kStages);
   std::map<std::string, int> reasons;
   std::vector<ImageFeatures> kept;
+  std::vector<GreyImage> kept_images;
   std::vector<Pose2> kept_truth;
   const auto every = static_cast<std::size_t>(number("every"));
   for (std::size_t i = 0; i < images->size(); i += every) {
@@ -187,16 +188,17 @@ int main(int argc, char** argv) {
     if (number("list") != 0) {
       std::printf(
           "%s %s matches %d inliers %d distinct %d cells %d visible %d of %d off %.3f m "
-          "%.2f deg map %.3f rms %.2f evidence %.1f sigma %.3f\n",
+          "%.2f deg map %.3f rms %.2f evidence %.1f sigma %.3f recognised %d of %d\n",
           (*images)[i].file.substr((*images)[i].file.rfind('/') + 1).c_str(),
           to_string(result.reason), result.matches, result.inliers, result.distinct, result.cells,
           result.visible, result.features, result.found ? off : -1, turned / kDegree,
           apart_m(result.pose, here), result.residual_px, result.evidence,
-          position_sigma_m(result.covariance));
+          position_sigma_m(result.covariance), result.recognised, result.looked_at);
     }
     if (number("false") > 0) {
       if (auto features = localizer.detect(*seen)) {
         kept.push_back(std::move(*features));
+        kept_images.push_back(*seen);
         kept_truth.push_back(true_pose);
       }
     }
@@ -226,7 +228,7 @@ int main(int argc, char** argv) {
       if (apart_m(at, kept_truth[image]) < 5) continue;
       ++trial;
       const QueryResult result =
-          localizer.locate(kept[image], resident, QueryPrior{at, covariance});
+          localizer.locate(kept[image], resident, QueryPrior{at, covariance}, &kept_images[image]);
       if (result.accepted) {
         ++accepted;
         std::printf(

@@ -76,6 +76,8 @@ std::string json_of(const Answer& answer) {
   add("cells", std::to_string(r.cells));
   add("visible", std::to_string(r.visible));
   add("evidence", digits_of(r.evidence, 2));
+  add("looked_at", std::to_string(r.looked_at));
+  add("recognised", std::to_string(r.recognised));
   add("residual_px", digits_of(r.residual_px, 3));
   add("signatures", std::to_string(r.signatures));
   add("best_signature", r.found ? std::to_string(r.best) : "null");

@@ -32,6 +32,13 @@ std::string features_text(int count) {
   return counted(static_cast<std::uint64_t>(count), "feature");
 }
 
+// What of the rest of the map in view was recognised, where it was looked for.
+std::string second_look_text(const QueryResult& result) {
+  if (result.looked_at == 0) return "";
+  return "; of " + counted(static_cast<std::uint64_t>(result.looked_at), "place") +
+         " more where the map has a point, " + std::to_string(result.recognised) + " look like it";
+}
+
 }  // namespace
 
 std::string query_reason(const QueryResult& result, const QueryAsked& asked) {
@@ -64,7 +71,8 @@ std::string query_reason(const QueryResult& result, const QueryAsked& asked) {
       return inliers + " matches agree, but no more and no more alike than chance gives where " +
              std::to_string(result.visible) +
              " features have a point of the map nearby (evidence " + rounded(result.evidence, 1) +
-             " of " + rounded(kLeastEvidence, 1) + " needed)" + nearest_text(result, asked);
+             " of " + rounded(kLeastEvidence, 1) + " needed" + second_look_text(result) + ")" +
+             nearest_text(result, asked);
     case Reason::kGathered:
       return inliers + " matches agree, but in " + std::to_string(result.cells) + " of " +
              std::to_string(asked.needed_cells) + " parts of the image needed" +

@@ -14,6 +14,16 @@
 
 namespace zonepack::localize {
 
+namespace {
+
+// OpenCV has no matrix of constant bytes; nobody writes to this one.
+cv::Mat pixels_of(const GreyImage& image) {
+  return {image.height, image.width, CV_8UC1,
+          const_cast<std::uint8_t*>(image.pixels.data())};  // NOLINT
+}
+
+}  // namespace
+
 struct FeatureDetector::OpenCv {
   cv::Ptr<cv::Feature2D> finder, describer;
   std::vector<cv::KeyPoint> keypoints;
@@ -57,9 +67,7 @@ ImageFeatures FeatureDetector::detect(const GreyImage& image, const CameraModel&
   out.height = image.height;
   out.stamp_ns = image.stamp_ns;
   out.descriptor_bytes = settings_.descriptor_bytes();
-  // OpenCV has no matrix of constant bytes; it does not write to this one.
-  const cv::Mat pixels(image.height, image.width, CV_8UC1,
-                       const_cast<std::uint8_t*>(image.pixels.data()));  // NOLINT
+  const cv::Mat pixels = pixels_of(image);
   const std::int64_t begin = thread_cpu_ns();
   cv_->finder->detect(pixels, cv_->keypoints);
   const auto most = static_cast<std::size_t>(settings_.max_features);
@@ -92,6 +100,28 @@ ImageFeatures FeatureDetector::detect(const GreyImage& image, const CameraModel&
   }
   out.detect_ns = found - begin;
   out.describe_ns = thread_cpu_ns() - found;
+  return out;
+}
+
+DescribedPlaces FeatureDetector::describe(const GreyImage& image,
+                                          std::span<const Eigen::Vector2f> px) {
+  ZP_REQUIRE(image.whole() && describes_anywhere());
+  DescribedPlaces out;
+  out.descriptor_bytes = settings_.descriptor_bytes();
+  out.row_of.assign(px.size(), -1);
+  cv_->keypoints.clear();
+  for (std::size_t i = 0; i < px.size(); ++i) {
+    // As GFTT gives them: without direction, on the image itself; class_id is the place.
+    cv_->keypoints.emplace_back(px[i].x(), px[i].y(), 3.0F, -1.0F, 0.0F, 0, static_cast<int>(i));
+  }
+  cv_->describer->compute(pixels_of(image), cv_->keypoints, cv_->descriptors);
+  out.rows.resize(cv_->keypoints.size() * out.descriptor_bytes);
+  for (std::size_t row = 0; row < cv_->keypoints.size(); ++row) {
+    out.row_of[static_cast<std::size_t>(cv_->keypoints[row].class_id)] =
+        static_cast<std::int32_t>(row);
+    std::memcpy(out.rows.data() + row * out.descriptor_bytes,
+                cv_->descriptors.ptr(static_cast<int>(row)), out.descriptor_bytes);
+  }
   return out;
 }
 

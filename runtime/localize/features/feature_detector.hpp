@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+#include <cstdint>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "runtime/localize/camera/camera_model.hpp"
 #include "runtime/localize/camera/grey_image.hpp"
@@ -9,6 +13,18 @@
 #include "runtime/localize/features/image_features.hpp"
 
 namespace zonepack::localize {
+
+// What places of an image look like, by their numbers in the list that was asked for.
+struct DescribedPlaces {
+  std::uint32_t descriptor_bytes = 0;
+  std::vector<std::uint8_t> rows;
+  std::vector<std::int32_t> row_of;  // -1: too near to the border to be described
+
+  const std::uint8_t* find(std::size_t place) const noexcept {
+    const std::int32_t row = row_of[place];
+    return row < 0 ? nullptr : rows.data() + static_cast<std::size_t>(row) * descriptor_bytes;
+  }
+};
 
 // Finds and describes the features of images as the map's source did, with OpenCV.
 //
@@ -20,6 +36,13 @@ class FeatureDetector {
 
   // `image` is whole.
   ImageFeatures detect(const GreyImage& image, const CameraModel& camera);
+
+  // Whether a descriptor is of a place alone: others need the size and direction that the detector
+  // found there.
+  bool describes_anywhere() const noexcept { return settings_.detector == Detector::kGfttOrb; }
+  // What an image looks like at any places, in its own pixels. Needs describes_anywhere().
+  DescribedPlaces describe(const GreyImage& image, std::span<const Eigen::Vector2f> px);
+
   const DetectorSettings& settings() const noexcept { return settings_; }
 
  private:

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/localize/query/localizer_state.hpp"
+#include "runtime/localize/query/second_look.hpp"
 #include "runtime/localize/solve/planar_ransac.hpp"
 #include "runtime/localize/solve/refine.hpp"
 #include "runtime/odometry/se2.hpp"
@@ -20,6 +21,7 @@ namespace {
 constexpr double kInlier_px = 3;
 constexpr double kSecondPass_px = 8;
 constexpr double kSecondPassDistance = 80;  // of 256 bits
+constexpr double kMatched_px = 6;
 constexpr double kVisible_px = 8;
 // Poses that are worth a second pass: the best of RANSAC and those nearly as good.
 constexpr std::size_t kStarts = 3;
@@ -34,8 +36,12 @@ constexpr double kDistinct_px = 4;
 // well it agrees, less what chance gives (4 in 100 features near a projected point: a dense map
 // gives more wrong inliers than a sparse one), less what the prior says against the pose. Chosen
 // among some 150 settings on two missions of two maps, images undisturbed and spoilt in eight ways.
-// Strongly blurred images on a sparse map pay for it: they have no more evidence than false places.
+// Strongly blurred images on a sparse map have no more of it than false places.
 constexpr double kChance = 0.04, kOffPrior = 0.5;
+// A pose with less of it than this is looked at again, if the image is there: what the second look
+// recognises counts, less what chance gives (5 of 100 places). Chosen on the same images.
+constexpr double kBeyondDoubt = kLeastEvidence + 1;
+constexpr double kRecognised = 0.5, kRecognisedByChance = 0.05;
 constexpr double kMostSigma_m = 0.1;  // a vaguer pose is of no use
 // Errors of the map itself, which no number of inliers averages out.
 constexpr double kMapSigma_m = 0.01;
@@ -184,6 +190,20 @@ void Localizer::State::polish(const ImageFeatures& image, const Candidates& cand
                        c.yaw_yaw * worse + kMapSigma_rad * kMapSigma_rad};
 }
 
+void Localizer::State::take_second_look(const ImageFeatures& image, const GreyImage& pixels,
+                                        const Candidates& candidates, QueryResult& result) {
+  const std::span<const Candidate> all(candidates.reach.data(),
+                                       std::min(kSecondPassSignatures, candidates.reach.size()));
+  MatchOptions second = matching();
+  second.most_distance = kSecondPassDistance;
+  const std::vector<Sighting> matched =
+      match_projected(image, all, camera, result.T_map_base, kMatched_px * scale, second);
+  const SecondLook look = look_again(pixels, detector, all, camera, result.T_map_base, matched);
+  result.looked_at = look.points;
+  result.recognised = look.recognised;
+  result.evidence += kRecognised * (look.recognised - kRecognisedByChance * look.points);
+}
+
 void Localizer::State::judge(const Candidates& candidates, const QueryPrior& prior,
                              QueryResult& result) const {
   const auto refuse = [&](Reason reason) { result.reason = reason; };
@@ -205,9 +225,9 @@ void Localizer::State::judge(const Candidates& candidates, const QueryPrior& pri
   result.reason = Reason::kAccepted;
 }
 
-void Localizer::State::locate_near(const ImageFeatures& image,
+void Localizer::State::locate_near(const ImageFeatures& image, const GreyImage* pixels,
                                    std::span<const MapFeatures* const> map, const QueryPrior& prior,
-                                   QueryResult& result) const {
+                                   QueryResult& result) {
   StageClock clock(result);
   const Candidates candidates = choose_candidates(map, camera, prior, kFirstPassSignatures);
   result.signatures = static_cast<int>(candidates.best.size());
@@ -260,6 +280,10 @@ void Localizer::State::locate_near(const ImageFeatures& image,
     if (!best || here.evidence > best->evidence) best = std::move(here);
   }
   result = std::move(*best);
+  if (pixels != nullptr && detector.describes_anywhere() && result.found &&
+      result.distinct >= options.needed && result.evidence < kBeyondDoubt) {
+    take_second_look(image, *pixels, candidates, result);
+  }
   judge(candidates, prior, result);
   clock.end(Stage::kRefine);
 }
@@ -283,7 +307,7 @@ std::optional<ImageFeatures> Localizer::detect(const GreyImage& image) {
 }
 
 QueryResult Localizer::locate(const ImageFeatures& image, std::span<const MapFeatures* const> map,
-                              const std::optional<QueryPrior>& prior) {
+                              const std::optional<QueryPrior>& prior, const GreyImage* pixels) {
   QueryResult result;
   result.features = static_cast<int>(image.size());
   if (result.features < state_->options.needed) {
@@ -291,7 +315,7 @@ QueryResult Localizer::locate(const ImageFeatures& image, std::span<const MapFea
     return result;
   }
   if (prior) {
-    state_->locate_near(image, map, *prior, result);
+    state_->locate_near(image, pixels, map, *prior, result);
   } else {
     state_->locate_anywhere(image, map, result);
   }
@@ -306,7 +330,7 @@ QueryResult Localizer::query(const GreyImage& image, std::span<const MapFeatures
     result.reason = Reason::kWrongSize;
     return result;
   }
-  QueryResult result = locate(*features, map, prior);
+  QueryResult result = locate(*features, map, prior, &image);
   result.cpu_ns[static_cast<std::size_t>(Stage::kDetect)] = features->detect_ns;
   result.cpu_ns[static_cast<std::size_t>(Stage::kDescribe)] = features->describe_ns;
   result.cpu_total_ns += features->detect_ns + features->describe_ns;

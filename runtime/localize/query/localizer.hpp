@@ -40,11 +40,12 @@ class Localizer {
   QueryResult query(const GreyImage& image, std::span<const MapFeatures* const> map,
                     const std::optional<QueryPrior>& prior);
 
-  // The same in two steps, for a search that tries many zones with buffered views.
+  // The same in two steps, for a search that tries many zones with buffered views; without the
+  // image there is no second look at it (second_look.hpp) when the evidence is not enough.
   // detect() gives none for an image that is not of the calibration's size.
   std::optional<ImageFeatures> detect(const GreyImage& image);
   QueryResult locate(const ImageFeatures& features, std::span<const MapFeatures* const> map,
-                     const std::optional<QueryPrior>& prior);
+                     const std::optional<QueryPrior>& prior, const GreyImage* image = nullptr);
 
   const CameraModel& camera() const noexcept;
   QueryOptions& options() noexcept;

@@ -38,15 +38,19 @@ struct Localizer::State {
   QueryOptions options;
   double scale;  // of distances in pixels
 
-  void locate_near(const ImageFeatures& image, std::span<const MapFeatures* const> map,
-                   const QueryPrior& prior, QueryResult& result) const;
+  // `pixels`: of the image, for a second look; may be null.
+  void locate_near(const ImageFeatures& image, const GreyImage* pixels,
+                   std::span<const MapFeatures* const> map, const QueryPrior& prior,
+                   QueryResult& result);
   void locate_anywhere(const ImageFeatures& image, std::span<const MapFeatures* const> map,
-                       QueryResult& result) const;
+                       QueryResult& result);
   void polish(const ImageFeatures& image, const Candidates& candidates,
               const Eigen::Isometry3d& start, QueryResult& result) const;
   void count(const ImageFeatures& image, const Candidates& candidates,
              std::vector<Sighting>& sightings, const Eigen::Isometry3d& T_map_base,
              QueryResult& result) const;
+  void take_second_look(const ImageFeatures& image, const GreyImage& pixels,
+                        const Candidates& candidates, QueryResult& result);
   void judge(const Candidates& candidates, const QueryPrior& prior, QueryResult& result) const;
   MatchOptions matching() const {
     MatchOptions out;

@@ -23,7 +23,7 @@ constexpr double kSamePlace_m = 1, kSameYaw_rad = 20 * std::numbers::pi / 180;
 // their neighbours.
 void Localizer::State::locate_anywhere(const ImageFeatures& image,
                                        std::span<const MapFeatures* const> map,
-                                       QueryResult& result) const {
+                                       QueryResult& result) {
   StageClock clock(result);
   struct Place {
     PlanarPose planar;
@@ -66,7 +66,7 @@ void Localizer::State::locate_anywhere(const ImageFeatures& image,
     tried.push_back(place.planar.pose);
     const QueryPrior prior{place.planar.pose, {0.04, 0, 0, 0.04, 0, 0.002}};
     QueryResult local;
-    locate_near(image, map, prior, local);
+    locate_near(image, nullptr, map, prior, local);
     result.cpu_total_ns += local.cpu_total_ns;
     for (std::size_t i = 0; i < kStages; ++i) result.cpu_ns[i] += local.cpu_ns[i];
     if (local.found) found.push_back(std::move(local));

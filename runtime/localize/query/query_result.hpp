@@ -70,9 +70,11 @@ struct QueryResult {
   int distinct = 0;      // inliers of distinct features of the image at distinct pixels
   double sure = 0;       // the distinct ones, each by how alike its descriptors are, 0 to 1
   double evidence = 0;   // the same by how well they agree too, less chance and what the prior says
-  int cells = 0;         // of the 4x4 of the image that hold an inlier
-  int visible = 0;       // features of the image with a projected map point within 8 px
-  int signatures = 0;    // candidates that were looked at
+  int looked_at = 0;   // places with an unmatched point of the map, in a second look; 0: none taken
+  int recognised = 0;  // of them, and counted in `evidence`
+  int cells = 0;       // of the 4x4 of the image that hold an inlier
+  int visible = 0;     // features of the image with a projected map point within 8 px
+  int signatures = 0;  // candidates that were looked at
   SignatureId nearest = 0;  // signature nearest to the prior, when there is one
   ZoneId nearest_zone = kNoZone;
   double nearest_m = 0;         // its distance

@@ -34,6 +34,12 @@ TEST(ReasonText, SaysHowMuchEvidenceIsMissing) {
   EXPECT_EQ(query_reason(result, {}),
             "18 matches agree, but no more and no more alike than chance gives where 120 features "
             "have a point of the map nearby (evidence 1.2 of 4.0 needed)");
+  result.looked_at = 60;
+  result.recognised = 2;
+  EXPECT_EQ(query_reason(result, {}),
+            "18 matches agree, but no more and no more alike than chance gives where 120 features "
+            "have a point of the map nearby (evidence 1.2 of 4.0 needed; of 60 places more where "
+            "the map has a point, 2 look like it)");
 }
 
 TEST(ReasonText, SaysSomethingForEveryReason) {

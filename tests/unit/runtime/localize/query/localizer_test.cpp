@@ -3,37 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <optional>
-#include <random>
 #include <string>
 
 #include "tests/support/image_changes.hpp"
+#include "tests/unit/runtime/localize/query/made_view.hpp"
 #include "tests/unit/runtime/localize/solve/made_sightings.hpp"
 
 namespace zonepack::localize {
 namespace {
-
-// 400 boxes of any grey at any place: corners everywhere, none like another.
-GreyImage made_view() {
-  GreyImage image;
-  image.width = 640;
-  image.height = 480;
-  image.pixels.assign(640 * 480, 128);
-  std::mt19937 random(5);
-  for (int box = 0; box < 400; ++box) {
-    const auto left = static_cast<int>(random() % 620), top = static_cast<int>(random() % 460);
-    const auto wide = static_cast<int>(10 + random() % 50),
-               high = static_cast<int>(10 + random() % 50);
-    const auto grey = static_cast<std::uint8_t>(random() % 256);
-    for (int y = top; y < std::min(480, top + high); ++y) {
-      for (int x = left; x < std::min(640, left + wide); ++x) {
-        image.pixels[static_cast<std::size_t>(y * 640 + x)] = grey;
-      }
-    }
-  }
-  return image;
-}
 
 // A map of one signature that took the image at kPlace: each feature at a depth of 1 to 5 m.
 class LocalizerTest : public testing::Test {
@@ -42,22 +20,7 @@ class LocalizerTest : public testing::Test {
       : localizer_(made_camera(), detector) {
     const CameraModel camera = made_camera();
     const auto features = localizer_.detect(view_);
-    map_.id = 7;
-    map_.zone = 0;
-    map_.T_map_base = lift(kPlace, 0);
-    map_.T_base_camera = camera.T_base_camera;
-    map_.descriptor_bytes = detector.descriptor_bytes();
-    map_.descriptors = features->descriptors;
-    std::mt19937 random(9);
-    for (const Eigen::Vector2f& px : features->px) {
-      const double depth = 1 + static_cast<double>(random() % 4000) / 1000;
-      const Eigen::Vector3d p =
-          camera.T_base_camera * Eigen::Vector3d((double{px.x()} - camera.cx) / camera.fx * depth,
-                                                 (double{px.y()} - camera.cy) / camera.fy * depth,
-                                                 depth);
-      map_.points.push_back({px.x(), px.y(), static_cast<float>(p.x()), static_cast<float>(p.y()),
-                             static_cast<float>(p.z())});
-    }
+    map_ = made_signature(*features, camera, detector.descriptor_bytes());
   }
 
   QueryResult query(const GreyImage& image, const std::optional<QueryPrior>& prior) {
@@ -65,7 +28,6 @@ class LocalizerTest : public testing::Test {
     return localizer_.query(image, all, prior);
   }
 
-  static constexpr Pose2 kPlace{3, -2, 0.7};
   const QueryPrior near_{{3.2, -2.1, 0.75}, {0.09, 0, 0, 0.09, 0, 0.0076}};
   GreyImage view_ = made_view();
   Localizer localizer_;
@@ -101,6 +63,24 @@ TEST_F(LocalizerTest, BearsWhatADayDoesToImages) {
     ASSERT_TRUE(result.accepted) << change << ": " << to_string(result.reason);
     EXPECT_NEAR(result.pose.x_m, 3, 0.02) << change;
   }
+}
+
+// A blur over 10 pixels leaves few corners where the map has them; what is seen where the pose says
+// so is evidence, too.
+TEST_F(LocalizerTest, LooksAgainAtTheImageWhereEvidenceIsShort) {
+  const GreyImage blurred = *test_support::changed(view_, "blur:10");
+  const MapFeatures* const all[] = {&map_};
+  const auto features = localizer_.detect(blurred);
+  const QueryResult once = localizer_.locate(*features, all, near_);
+  EXPECT_EQ(once.reason, Reason::kChance);
+  EXPECT_EQ(once.looked_at, 0);
+  const QueryResult twice = localizer_.locate(*features, all, near_, &blurred);
+  EXPECT_TRUE(twice.accepted) << to_string(twice.reason);
+  EXPECT_NEAR(twice.pose.x_m, 3, 0.2);
+  EXPECT_NEAR(twice.evidence, once.evidence + 0.5 * (twice.recognised - 0.05 * twice.looked_at),
+              1e-9);
+  EXPECT_GT(twice.recognised, 10);
+  EXPECT_EQ(query(view_, near_).looked_at, 0);  // nothing is in doubt
 }
 
 TEST_F(LocalizerTest, AcceptsNothingThatIsNoView) {
