@@ -190,15 +190,16 @@ void Localizer::State::polish(const ImageFeatures& image, const Candidates& cand
                        c.yaw_yaw * worse + kMapSigma_rad * kMapSigma_rad};
 }
 
-void Localizer::State::take_second_look(const ImageFeatures& image, const GreyImage& pixels,
-                                        const Candidates& candidates, QueryResult& result) {
+void Localizer::State::weigh_second_look(const ImageFeatures& image, const GreyImage& pixels,
+                                         const Candidates& candidates, QueryResult& result) {
   const std::span<const Candidate> all(candidates.reach.data(),
                                        std::min(kSecondPassSignatures, candidates.reach.size()));
   MatchOptions second = matching();
   second.most_distance = kSecondPassDistance;
   const std::vector<Sighting> matched =
       match_projected(image, all, camera, result.T_map_base, kMatched_px * scale, second);
-  const SecondLook look = look_again(pixels, detector, all, camera, result.T_map_base, matched);
+  const SecondLook look =
+      take_second_look(pixels, detector, all, camera, result.T_map_base, matched);
   result.looked_at = look.points;
   result.recognised = look.recognised;
   result.evidence += kRecognised * (look.recognised - kRecognisedByChance * look.points);
@@ -282,7 +283,7 @@ void Localizer::State::locate_near(const ImageFeatures& image, const GreyImage* 
   result = std::move(*best);
   if (pixels != nullptr && detector.describes_anywhere() && result.found &&
       result.distinct >= options.needed && result.evidence < kBeyondDoubt) {
-    take_second_look(image, *pixels, candidates, result);
+    weigh_second_look(image, *pixels, candidates, result);
   }
   judge(candidates, prior, result);
   clock.end(Stage::kRefine);

@@ -49,8 +49,8 @@ struct Localizer::State {
   void count(const ImageFeatures& image, const Candidates& candidates,
              std::vector<Sighting>& sightings, const Eigen::Isometry3d& T_map_base,
              QueryResult& result) const;
-  void take_second_look(const ImageFeatures& image, const GreyImage& pixels,
-                        const Candidates& candidates, QueryResult& result);
+  void weigh_second_look(const ImageFeatures& image, const GreyImage& pixels,
+                         const Candidates& candidates, QueryResult& result);
   void judge(const Candidates& candidates, const QueryPrior& prior, QueryResult& result) const;
   MatchOptions matching() const {
     MatchOptions out;

@@ -118,9 +118,10 @@ std::optional<int> least_distance(const Place& place, const DescribedPlaces& des
 
 }  // namespace
 
-SecondLook look_again(const GreyImage& image, FeatureDetector& detector,
-                      std::span<const Candidate> candidates, const CameraModel& camera,
-                      const Eigen::Isometry3d& T_map_base, std::span<const Sighting> matched) {
+SecondLook take_second_look(const GreyImage& image, FeatureDetector& detector,
+                            std::span<const Candidate> candidates, const CameraModel& camera,
+                            const Eigen::Isometry3d& T_map_base,
+                            std::span<const Sighting> matched) {
   ZP_REQUIRE(detector.describes_anywhere());
   const double scale = camera.fx / kUsualFocal_px;
   const std::vector<Place> places =

@@ -17,7 +17,7 @@ class SecondLookTest : public testing::Test {
   SecondLook look(const GreyImage& image, const Pose2& pose,
                   const std::vector<Sighting>& matched = {}) {
     const Candidate candidates[] = {{&map_, 0}};
-    return look_again(image, detector_, candidates, camera_, lift(pose, 0), matched);
+    return take_second_look(image, detector_, candidates, camera_, lift(pose, 0), matched);
   }
 
   const CameraModel camera_ = made_camera();
