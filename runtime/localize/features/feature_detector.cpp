@@ -13,7 +13,6 @@
 #include "runtime/localize/features/banded_corners.hpp"
 
 namespace zonepack::localize {
-
 namespace {
 
 // OpenCV has no matrix of constant bytes; nobody writes to this one.

@@ -19,9 +19,8 @@ namespace zonepack::localize {
 namespace {
 
 constexpr double kInlier_px = 3;
-constexpr double kSecondPass_px = 8;
+constexpr double kSecondPass_px = 8, kSecondPassEnd_px = 6;
 constexpr double kSecondPassDistance = 80;  // of 256 bits
-constexpr double kMatched_px = 6;
 constexpr double kVisible_px = 8;
 // Poses that are worth a second pass: the best of RANSAC and those nearly as good.
 constexpr std::size_t kStarts = 3;
@@ -75,6 +74,16 @@ std::size_t count_features(const std::vector<Sighting>& sightings) {
     count += i == 0 || sightings[i].feature != sightings[i - 1].feature ? 1 : 0;
   }
   return count;
+}
+
+std::span<const Candidate> of_second_pass(const Candidates& candidates) {
+  return {candidates.reach.data(), std::min(kSecondPassSignatures, candidates.reach.size())};
+}
+
+// Near where a pose puts a point, the place says more than in the first pass.
+MatchOptions second_matching(MatchOptions first) {
+  first.most_distance = kSecondPassDistance;
+  return first;
 }
 
 }  // namespace
@@ -157,14 +166,12 @@ void Localizer::State::polish(const ImageFeatures& image, const Candidates& cand
   refining.start_px = 4 * scale;
   refining.end_px = 2 * scale;
   refining.sigma_px = scale;
-  const std::span<const Candidate> all(candidates.reach.data(),
-                                       std::min(kSecondPassSignatures, candidates.reach.size()));
+  const std::span<const Candidate> all = of_second_pass(candidates);
   Refined refined;
   refined.T_map_base = start;
   std::vector<Sighting> sightings;
-  MatchOptions second = matching();
-  second.most_distance = kSecondPassDistance;  // the place says more than in the first pass
-  for (const double radius : {kSecondPass_px, kSecondPass_px * 0.75}) {
+  const MatchOptions second = second_matching(matching());
+  for (const double radius : {kSecondPass_px, kSecondPassEnd_px}) {
     sightings = match_projected(image, all, camera, refined.T_map_base, radius * scale, second);
     if (sightings.size() < 4) break;
     refined = refine(sightings, camera, refined.T_map_base, plane, refining);
@@ -192,12 +199,10 @@ void Localizer::State::polish(const ImageFeatures& image, const Candidates& cand
 
 void Localizer::State::weigh_second_look(const ImageFeatures& image, const GreyImage& pixels,
                                          const Candidates& candidates, QueryResult& result) {
-  const std::span<const Candidate> all(candidates.reach.data(),
-                                       std::min(kSecondPassSignatures, candidates.reach.size()));
-  MatchOptions second = matching();
-  second.most_distance = kSecondPassDistance;
+  const std::span<const Candidate> all = of_second_pass(candidates);
   const std::vector<Sighting> matched =
-      match_projected(image, all, camera, result.T_map_base, kMatched_px * scale, second);
+      match_projected(image, all, camera, result.T_map_base, kSecondPassEnd_px * scale,
+                      second_matching(matching()));
   const SecondLook look =
       take_second_look(pixels, detector, all, camera, result.T_map_base, matched);
   result.looked_at = look.points;
