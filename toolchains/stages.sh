@@ -86,23 +86,31 @@ stage_decisions() {
   tests/system/same_decisions_test.sh build/test/bin/zonepack tests/data "${zoneds[@]}"
 }
 
-# Where ZONEPACK_LAST_START is set, no stage begins after that many minutes: who is stopped from outside has shown nothing.
-late() { [ -n "${ZONEPACK_LAST_START:-}" ] && ((SECONDS > ZONEPACK_LAST_START * 60)); }
+# Where ZONEPACK_MINUTES is set, the stages take no longer: none begins in the last quarter of an hour, and one that still
+# runs at the end is stopped and has failed. Who is stopped from outside has shown nothing.
+seconds_left() { echo $((ZONEPACK_MINUTES * 60 - SECONDS)); }
+late() { [ -n "${ZONEPACK_MINUTES:-}" ] && (($(seconds_left) < 15 * 60)); }
+run_stage() {  # NAME
+  local limit=()
+  if [ -n "${ZONEPACK_MINUTES:-}" ]; then limit=(timeout --kill-after=20 "$(seconds_left)"); fi
+  ZONEPACK_SECONDS=$SECONDS "${limit[@]}" toolchains/run stage "$1"
+}
 
 # Each in a process of its own, all of them whatever fails, and a table of their times.
 run_stages() {  # NAME...
   local name began code result table=() bad=() left=()
   for name in "$@"; do
     began=$SECONDS code=0
-    if late; then code=78; else ZONEPACK_SECONDS=$SECONDS toolchains/run stage "$name" || code=$?; fi
+    if late; then code=78; else run_stage "$name" || code=$?; fi
     case $code in
       0) result=passed ;;
       77) result="not run: this machine cannot" left+=("$name") ;;
-      78) result="not run: $ZONEPACK_LAST_START minutes had passed" left+=("$name") ;;
+      78) result="not run: less than 15 of $ZONEPACK_MINUTES minutes were left" left+=("$name") ;;
+      124 | 137) result="FAILED: stopped after $ZONEPACK_MINUTES minutes" bad+=("$name") ;;
       *) result=FAILED bad+=("$name") ;;
     esac
     table+=("$(printf '%-10s %3d:%02d  %s' "$name" $(((SECONDS - began) / 60)) $(((SECONDS - began) % 60)) "$result")")
-    if [[ $result == FAILED ]]; then stage "$name failed; alone: toolchains/run stage $name"; fi
+    if [[ $result == FAILED* ]]; then stage "$name failed; alone: toolchains/run stage $name"; fi
   done
   stage "stages, minutes and seconds of each"
   printf '   %s\n' "${table[@]}"
@@ -144,7 +152,8 @@ EOT
 
 ctest_of() {  # PRESET WHAT [arguments of ctest]
   stage "tests: $2"
-  ctest --preset "$1" -j "$(nproc)" --output-on-failure "${@:3}" 2>&1 | counted "build/$1/ctest.log"
+  # The limit is for tests that name none: what a failed one left running may hold its output open for good.
+  ctest --preset "$1" -j "$(nproc)" --timeout 600 --output-on-failure "${@:3}" 2>&1 | counted "build/$1/ctest.log"
   skipped "$1"
 }
 
@@ -158,13 +167,29 @@ skipped() {  # PRESET
 }
 
 # Copies the output of ninja or ctest into LOG and shows how far it is: a count that runs on a terminal, a line at every
-# tenth elsewhere. Of the other lines those are shown that do not begin a test or list one as skipped.
+# tenth elsewhere, and what it waits for when there was no line for two minutes. Of the other lines those are shown that
+# do not begin a test or list one as skipped.
 counted() {  # LOG
-  local line over='' tenth=0
+  local line begun='' over='' tenth=0 code
+  local -A running=()
   if [ -t 1 ]; then over=$'\r\e[K'; fi
   : >"$1"
-  while IFS= read -r line; do
+  while true; do
+    code=0
+    IFS= read -r -t 120 line || code=$?
+    line=$begun$line begun=
+    if ((code > 128)); then
+      begun=$line
+      if ((${#running[@]})); then printf '%s   waiting for %s\n' "$over" "${running[*]}"; fi
+      continue
+    fi
+    if ((code)) && [ -z "$line" ]; then break; fi
     printf '%s\n' "$line" >>"$1"
+    if [[ $line =~ ^\ *Start\ +([0-9]+):\ (.*) ]]; then
+      running[${BASH_REMATCH[1]}]=${BASH_REMATCH[2]}
+      continue
+    fi
+    if [[ $line =~ \ Test\ +#([0-9]+): ]]; then unset "running[${BASH_REMATCH[1]}]"; fi
     if [[ ! $line =~ \*\*\*(Failed|Timeout|Exception) && $line =~ ^\ *\[?([0-9]+)/([0-9]+)\]?\  ]]; then
       if [ -n "$over" ]; then
         printf '%s   %s of %s' "$over" "${BASH_REMATCH[@]:1:2}"
@@ -172,7 +197,7 @@ counted() {  # LOG
         tenth=$((BASH_REMATCH[1] * 10 / BASH_REMATCH[2]))
         printf '   %s of %s\n' "${BASH_REMATCH[@]:1:2}"
       fi
-    elif [[ -n $line && ! $line =~ ^\ *Start\ +[0-9]+: && $line != *'(Skipped)' ]]; then
+    elif [[ -n $line && $line != *'(Skipped)' ]]; then
       printf '%s%s\n' "$over" "$line"
     fi
   done

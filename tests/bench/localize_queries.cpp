@@ -7,7 +7,7 @@
 // prior at a signature elsewhere), roll=, pitch= (degrees by which the camera is tilted, unknown
 // to the localizer), z= (metres by which it is lower), change=gain:2.5 and others
 // (image_changes.hpp), every=N (only each N-th image), lost=1 (no prior), list=1 (a line for each
-// image), needed=10, json=FILE.
+// image), needed=8, json=FILE.
 //
 // Prints the share of right fixes (within 0.5 m and 10 degrees of the truth), wrong ones, errors to
 // the truth and in the map's frame (the truth moved by the own error of the signature nearest in
@@ -92,9 +92,9 @@ double percentile(std::vector<double> values, double p) {
 int main(int argc, char** argv) {
   if (argc < 3) stop("usage: localize_queries MAP MISSION [OPTION=VALUE...]");
   std::map<std::string, std::string> options{
-      {"position", "0.3"}, {"yaw", "5"},     {"seed", "1"},      {"false", "0"}, {"roll", "0"},
-      {"pitch", "0"},      {"z", "0"},       {"change", "none"}, {"every", "1"}, {"lost", "0"},
-      {"list", "0"},       {"needed", "10"}, {"json", ""}};
+      {"position", "0.3"}, {"yaw", "5"},    {"seed", "1"},      {"false", "0"}, {"roll", "0"},
+      {"pitch", "0"},      {"z", "0"},      {"change", "none"}, {"every", "1"}, {"lost", "0"},
+      {"list", "0"},       {"needed", "8"}, {"json", ""}};
   for (int i = 3; i < argc; ++i) {
     const std::string word = argv[i];
     const std::size_t equal = word.find('=');

@@ -25,6 +25,13 @@ struct CameraModel {
   Eigen::Vector2d undistort(const Eigen::Vector2d& px) const noexcept;
   // The inverse.
   Eigen::Vector2d distort(const Eigen::Vector2d& px) const noexcept;
+  // The same two; nothing is to be done for a camera without distortion.
+  Eigen::Vector2f ideal(const Eigen::Vector2f& seen_px) const noexcept {
+    return distorted() ? undistort(seen_px.cast<double>()).cast<float>().eval() : seen_px;
+  }
+  Eigen::Vector2f seen(const Eigen::Vector2f& ideal_px) const noexcept {
+    return distorted() ? distort(ideal_px.cast<double>()).cast<float>().eval() : ideal_px;
+  }
 };
 
 }  // namespace zonepack::localize

@@ -76,6 +76,7 @@ std::string json_of(const Answer& answer) {
   add("cells", std::to_string(r.cells));
   add("visible", std::to_string(r.visible));
   add("evidence", digits_of(r.evidence, 2));
+  add("places_found", std::to_string(r.places_found));
   add("looked_at", std::to_string(r.looked_at));
   add("recognised", std::to_string(r.recognised));
   add("residual_px", digits_of(r.residual_px, 3));

@@ -15,7 +15,7 @@ inline constexpr double kDegreeInRad = std::numbers::pi / 180;
 struct QueryAsked {
   CameraModel camera;
   int image_width = 0, image_height = 0;
-  int needed = 10, needed_cells = 4;
+  int needed = 8, needed_cells = 4;
   bool with_prior = false;
   std::string nearest_zone;  // by name
 };

@@ -5,12 +5,14 @@
 #include <cstring>
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "platform/base/require.hpp"
 #include "platform/clock.hpp"
 #include "runtime/localize/features/banded_corners.hpp"
+#include "runtime/localize/features/orb_comparisons.hpp"
 
 namespace zonepack::localize {
 namespace {
@@ -27,6 +29,17 @@ struct FeatureDetector::OpenCv {
   cv::Ptr<cv::Feature2D> finder, describer;
   std::vector<cv::KeyPoint> keypoints;
   cv::Mat descriptors;
+  std::optional<OrbComparisons> comparisons;
+  bool comparisons_read = false;
+
+  // Null: OpenCV describes.
+  OrbComparisons* read_comparisons(const DetectorSettings& settings) {
+    if (!comparisons_read && settings.wta_k == 2) {
+      comparisons = OrbComparisons::read(*describer, settings.patch_px, settings.edge_px);
+    }
+    comparisons_read = true;
+    return comparisons ? &*comparisons : nullptr;
+  }
 };
 
 FeatureDetector::FeatureDetector(const DetectorSettings& s)
@@ -81,9 +94,7 @@ ImageFeatures FeatureDetector::detect(const GreyImage& image, const CameraModel&
   order.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector2f seen(cv_->keypoints[i].pt.x, cv_->keypoints[i].pt.y);
-    order.emplace_back(
-        camera.distorted() ? camera.undistort(seen.cast<double>()).cast<float>().eval() : seen,
-        static_cast<int>(i));
+    order.emplace_back(camera.ideal(seen), static_cast<int>(i));
   }
   std::stable_sort(order.begin(), order.end(),
                    [](const auto& a, const auto& b) { return a.first.x() < b.first.x(); });
@@ -108,6 +119,17 @@ DescribedPlaces FeatureDetector::describe(const GreyImage& image,
   DescribedPlaces out;
   out.descriptor_bytes = settings_.descriptor_bytes();
   out.row_of.assign(px.size(), -1);
+  if (OrbComparisons* comparisons = cv_->read_comparisons(settings_)) {
+    out.rows.resize(px.size() * out.descriptor_bytes);
+    comparisons->use(pixels_of(image));
+    std::int32_t row = 0;
+    for (std::size_t i = 0; i < px.size(); ++i) {
+      std::uint8_t* at = out.rows.data() + static_cast<std::size_t>(row) * out.descriptor_bytes;
+      if (comparisons->place(px[i].x(), px[i].y(), at)) out.row_of[i] = row++;
+    }
+    comparisons->release();
+    return out;
+  }
   cv_->keypoints.clear();
   for (std::size_t i = 0; i < px.size(); ++i) {
     // As GFTT gives them: without direction, on the image itself; class_id is the place.
@@ -120,6 +142,42 @@ DescribedPlaces FeatureDetector::describe(const GreyImage& image,
         static_cast<std::int32_t>(row);
     std::memcpy(out.rows.data() + row * out.descriptor_bytes,
                 cv_->descriptors.ptr(static_cast<int>(row)), out.descriptor_bytes);
+  }
+  return out;
+}
+
+DescribedGrid FeatureDetector::describe_grid(const GreyImage& image, int step_px) {
+  ZP_REQUIRE(image.whole() && describes_anywhere() && step_px > 0);
+  DescribedGrid out;
+  out.descriptor_bytes = settings_.descriptor_bytes();
+  out.step_px = step_px;
+  out.first_px = (settings_.edge_px + step_px - 1) / step_px * step_px;
+  const auto places_along = [&](int size) {
+    return std::max(0, (size - settings_.edge_px - 1 - out.first_px) / step_px + 1);
+  };
+  if (image.width <= 2 * settings_.edge_px || image.height <= 2 * settings_.edge_px) return out;
+  out.columns = places_along(image.width);
+  out.rows = places_along(image.height);
+  const auto count = static_cast<std::size_t>(out.columns) * static_cast<std::size_t>(out.rows);
+  out.descriptors.resize(count * out.descriptor_bytes);
+  if (OrbComparisons* comparisons = cv_->read_comparisons(settings_)) {
+    comparisons->use(pixels_of(image));
+    comparisons->grid(out.first_px, step_px, out.columns, out.rows, out.descriptors.data());
+    comparisons->release();
+    return out;
+  }
+  std::vector<Eigen::Vector2f> px;
+  px.reserve(count);
+  for (int row = 0; row < out.rows; ++row) {
+    for (int column = 0; column < out.columns; ++column) {
+      px.emplace_back(static_cast<float>(out.first_px + column * step_px),
+                      static_cast<float>(out.first_px + row * step_px));
+    }
+  }
+  const DescribedPlaces described = describe(image, px);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::memcpy(out.descriptors.data() + i * out.descriptor_bytes, described.find(i),
+                out.descriptor_bytes);
   }
   return out;
 }

@@ -26,6 +26,13 @@ struct DescribedPlaces {
   }
 };
 
+// The same of places on a grid: row by row, from the first that is far enough from the border.
+struct DescribedGrid {
+  std::uint32_t descriptor_bytes = 0;
+  int first_px = 0, step_px = 1, columns = 0, rows = 0;
+  std::vector<std::uint8_t> descriptors;
+};
+
 // Finds and describes the features of images as the map's source did, with OpenCV.
 //
 // Threads: one at a time; OpenCV starts none.
@@ -42,6 +49,7 @@ class FeatureDetector {
   bool describes_anywhere() const noexcept { return settings_.detector == Detector::kGfttOrb; }
   // What an image looks like at any places, in its own pixels. Needs describes_anywhere().
   DescribedPlaces describe(const GreyImage& image, std::span<const Eigen::Vector2f> px);
+  DescribedGrid describe_grid(const GreyImage& image, int step_px);
 
   const DetectorSettings& settings() const noexcept { return settings_; }
 

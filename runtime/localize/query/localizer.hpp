@@ -15,7 +15,7 @@
 namespace zonepack::localize {
 
 struct QueryOptions {
-  int needed = 10;            // distinct inliers
+  int needed = 8;             // distinct inliers
   int needed_cells = 4;       // of the 4x4 of the image
   std::uint64_t seed = 1;     // of RANSAC: the same seed, the same result
   bool keep_matches = false;  // fill QueryResult::drawn
@@ -40,8 +40,9 @@ class Localizer {
   QueryResult query(const GreyImage& image, std::span<const MapFeatures* const> map,
                     const std::optional<QueryPrior>& prior);
 
-  // The same in two steps, for a search that tries many zones with buffered views; without the
-  // image there is no second look at it (second_look.hpp) when the evidence is not enough.
+  // The same in two steps, for a search that tries many zones with buffered views. Without the
+  // image, what the detector found is all there is: no places are found in it (place_search.hpp),
+  // and there is no second look at it (second_look.hpp), when the evidence is not enough.
   // detect() gives none for an image that is not of the calibration's size.
   std::optional<ImageFeatures> detect(const GreyImage& image);
   QueryResult locate(const ImageFeatures& features, std::span<const MapFeatures* const> map,

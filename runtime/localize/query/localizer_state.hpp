@@ -12,8 +12,8 @@
 #include "runtime/localize/query/localizer.hpp"
 #include "runtime/localize/query/matching.hpp"
 
-// What the parts of a query share. Near a known pose: localizer.cpp; without one:
-// locate_anywhere.cpp.
+// What the parts of a query share. Near a known pose: locate_near.cpp; without one:
+// locate_anywhere.cpp; what an image says of a pose: explain_pose.cpp.
 namespace zonepack::localize {
 
 // Adds the processor time of this thread to the stages of a result.
@@ -38,12 +38,14 @@ struct Localizer::State {
   QueryOptions options;
   double scale;  // of distances in pixels
 
-  // `pixels`: of the image, for a second look; may be null.
+  // `pixels`: of the image, for finding places and for a second look; may be null.
   void locate_near(const ImageFeatures& image, const GreyImage* pixels,
                    std::span<const MapFeatures* const> map, const QueryPrior& prior,
                    QueryResult& result);
   void locate_anywhere(const ImageFeatures& image, std::span<const MapFeatures* const> map,
                        QueryResult& result);
+  void solve(const ImageFeatures& image, const GreyImage* pixels, const Candidates& candidates,
+             const std::vector<Sighting>& sightings, const QueryPrior& prior, QueryResult& result);
   void polish(const ImageFeatures& image, const Candidates& candidates,
               const Eigen::Isometry3d& start, QueryResult& result) const;
   void count(const ImageFeatures& image, const Candidates& candidates,

@@ -63,6 +63,14 @@ void read_camera(ByteSpan bytes, MapFeatures& into) {
 
 }  // namespace
 
+double view_change(const MapFeatures& map, const Eigen::Vector3d& p_map,
+                   const Eigen::Vector3d& eye) {
+  const Eigen::Vector3d now = p_map - eye;
+  const Eigen::Vector3d then = p_map - map.T_map_base * map.T_base_camera.translation();
+  const double turned = std::acos(std::clamp(now.normalized().dot(then.normalized()), -1.0, 1.0));
+  return std::abs(std::log(now.norm() / then.norm())) + turned;
+}
+
 std::optional<MapFeatures> copy_features(const SignatureView& signature, ZoneId zone,
                                          std::uint32_t descriptor_bytes) {
   const auto pose = signature.T_map_base();

@@ -30,6 +30,11 @@ struct MapFeatures {
   std::vector<std::uint8_t> descriptors;  // points.size() * descriptor_bytes
 };
 
+// How differently a camera at `eye` sees a point of the map from how the signature's own did: the
+// ratio of the distances, as a logarithm, and the angle between the views, in radians, together.
+double view_change(const MapFeatures& map, const Eigen::Vector3d& p_map,
+                   const Eigen::Vector3d& eye);
+
 // Copies what a query needs. Nothing for a signature without a pose. Features without a point or
 // with a descriptor of another length than `descriptor_bytes` are left out.
 // A zone that is read in zoned's memory may change meanwhile: use the copy only after read()

@@ -2,13 +2,13 @@
 #include "runtime/localize/query/matching.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
 #include "runtime/localize/features/hamming.hpp"
 #include "runtime/localize/query/feature_grid.hpp"
+#include "runtime/localize/query/search_windows.hpp"
 
 namespace zonepack::localize {
 namespace {
@@ -63,16 +63,12 @@ struct Best {
   }
 };
 
-Eigen::Vector3f point_of(const MapPoint& point) { return {point.x_m, point.y_m, point.z_m}; }
-
 Sighting sighting_of(const ImageFeatures& image, const MapFeatures& map, std::uint32_t feature,
                      std::uint32_t signature, std::uint32_t row, double distance) {
-  // Of 256 bits: 30 differ in most right matches, 85 in few.
-  const double weight = std::clamp((85 - distance) / (85 - 30), 0.05, 1.0);
   return {map.T_map_base * point_of(map.points[row]).cast<double>(),
           image.px[feature].cast<double>(),
           feature,
-          weight,
+          weight_of_match(distance),
           signature,
           row};
 }
@@ -81,77 +77,6 @@ void sort_by_feature(std::vector<Sighting>& sightings) {
   std::stable_sort(sightings.begin(), sightings.end(),
                    [](const Sighting& a, const Sighting& b) { return a.feature < b.feature; });
 }
-
-// A pinhole in floats, for the loops over all points.
-struct Pinhole {
-  float fx, fy, cx, cy, width, height;
-  explicit Pinhole(const CameraModel& camera)
-      : fx(static_cast<float>(camera.fx)),
-        fy(static_cast<float>(camera.fy)),
-        cx(static_cast<float>(camera.cx)),
-        cy(static_cast<float>(camera.cy)),
-        width(static_cast<float>(camera.width)),
-        height(static_cast<float>(camera.height)) {}
-  Eigen::Vector2f project(const Eigen::Vector3f& p) const {
-    return {cx + fx * p.x() / p.z(), cy + fy * p.y() / p.z()};
-  }
-};
-
-// Where one candidate's points are in the image, as far as the prior knows.
-class Windows {
- public:
-  Windows(const CameraModel& camera, const QueryPrior& prior, double floor_z_m,
-          const MatchOptions& options)
-      : pinhole_(camera),
-        sigmas_(static_cast<float>(options.sigmas)),
-        margin_(static_cast<float>(options.margin_px)) {
-    const std::array<Pose2, 7> poses = spanning_poses(prior);
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      T_camera_map_[i] = (lift(poses[i], floor_z_m) * camera.T_base_camera).inverse();
-    }
-  }
-  void use(const MapFeatures& map) {
-    for (std::size_t i = 0; i < T_camera_map_.size(); ++i) {
-      const Eigen::Isometry3f T = (T_camera_map_[i] * map.T_map_base).cast<float>();
-      rotation_[i] = T.linear();
-      shift_[i] = T.translation();
-    }
-  }
-
-  struct Window {
-    Eigen::Vector2f middle, half;
-  };
-  // False: the camera cannot see it.
-  bool find(const Eigen::Vector3f& p_base, Window& out) const {
-    const Eigen::Vector3f p = rotation_[0] * p_base + shift_[0];
-    if (p.z() < 0.2F) return false;
-    out.middle = pinhole_.project(p);
-    Eigen::Vector2f square = Eigen::Vector2f::Zero();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      Eigen::Vector2f most = Eigen::Vector2f::Zero();
-      for (std::size_t i = 1 + 2 * axis; i < 3 + 2 * axis; ++i) {
-        const Eigen::Vector3f moved = rotation_[i] * p_base + shift_[i];
-        if (moved.z() < 0.1F) {
-          most = Eigen::Vector2f::Constant(1e4F);
-          break;
-        }
-        most = most.cwiseMax((pinhole_.project(moved) - out.middle).cwiseAbs());
-      }
-      square += most.cwiseAbs2();
-    }
-    out.half = (square.cwiseSqrt() * sigmas_).array() + margin_;
-    return out.middle.x() + out.half.x() > 0 && out.middle.y() + out.half.y() > 0 &&
-           out.middle.x() - out.half.x() < pinhole_.width &&
-           out.middle.y() - out.half.y() < pinhole_.height;
-  }
-
- private:
-  Pinhole pinhole_;
-  float sigmas_, margin_;
-  std::array<Eigen::Isometry3d, 7> T_camera_map_;
-  std::array<Eigen::Matrix3f, 7> rotation_;
-  std::array<Eigen::Vector3f, 7> shift_;
-};
 
 // Calls fn(candidate, row, where in the image) for all points that a camera at the pose sees.
 template <typename Fn>
@@ -179,13 +104,17 @@ void for_each_seen(std::span<const Candidate> candidates, const CameraModel& cam
 
 }  // namespace
 
+double weight_of_match(double distance) noexcept {
+  return std::clamp((85 - distance) / (85 - 30), 0.05, 1.0);
+}
+
 std::vector<Sighting> match_in_windows(const ImageFeatures& image,
                                        std::span<const Candidate> candidates,
                                        const CameraModel& camera, const QueryPrior& prior,
                                        double floor_z_m, const MatchOptions& options) {
   const Metric metric{options.binary, image.descriptor_bytes};
   const double most = options.most_distance * metric.unit();
-  Windows windows(camera, prior, floor_z_m, options);
+  SearchWindows windows(camera, prior, floor_z_m, options);
   std::vector<std::uint16_t> distances(image.size());
   std::vector<float> columns, lines;
   for (const Eigen::Vector2f& px : image.px) {
@@ -201,7 +130,7 @@ std::vector<Sighting> match_in_windows(const ImageFeatures& image,
     std::fill(of_feature.begin(), of_feature.end(), Best{});
     of_row.assign(map.points.size(), Best{});
     for (std::uint32_t row = 0; row < map.points.size(); ++row) {
-      Windows::Window window;
+      SearchWindows::Window window;
       if (!windows.find(point_of(map.points[row]), window)) continue;
       const float left = window.middle.x() - window.half.x();
       const float right = window.middle.x() + window.half.x();

@@ -19,6 +19,10 @@ struct MatchOptions {
   double margin_px = 14;      // what tilt and the map's own errors add to it
 };
 
+// How sure a match is whose descriptors differ in so many of 256 bits, 0.05 to 1: 30 differ in most
+// right matches, 85 in few.
+double weight_of_match(double distance) noexcept;
+
 // Matches each candidate's points with the image's features inside the window where the prior lets
 // them be: nearest descriptor, clearly nearer than the second, and in both directions. Sorted by
 // feature.

@@ -65,6 +65,7 @@ struct QueryResult {
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
   double floor_z_m = 0;  // where the map has the floor there
   int features = 0;      // of the image
+  int places_found = 0;  // without the detector, when its features were not enough
   int matches = 0;       // of the pass that counts
   int inliers = 0;       // matches that the pose explains
   int distinct = 0;      // inliers of distinct features of the image at distinct pixels

@@ -15,8 +15,7 @@ namespace zonepack::localize {
 namespace {
 
 constexpr std::size_t kMostSignatures = 12, kMostPlaces = 60, kMostPointsAPlace = 4;
-// Of the distance (as a logarithm) and the direction from which a point is seen, together.
-constexpr double kMostChange = 0.5;
+constexpr double kMostChange = 0.5;  // view_change()
 constexpr double kApart_px = 6;      // points nearer to each other are one place
 constexpr double kNearMatch_px = 8;  // and near a match there is nothing new
 constexpr int kClearly_bits = 20;
@@ -48,7 +47,6 @@ std::vector<MapPointSeen> points_in_view(std::span<const Candidate> candidates,
   for (const Candidate& candidate :
        candidates.first(std::min(kMostSignatures, candidates.size()))) {
     const MapFeatures& map = *candidate.map;
-    const Eigen::Vector3d eye = map.T_map_base * map.T_base_camera.translation();
     for (std::size_t row = 0; row < map.points.size(); ++row) {
       const MapPoint& point = map.points[row];
       const Eigen::Vector3d p_map =
@@ -58,9 +56,7 @@ std::vector<MapPointSeen> points_in_view(std::span<const Candidate> candidates,
       const Eigen::Vector2d px(camera.cx + camera.fx * p_camera.x() / p_camera.z(),
                                camera.cy + camera.fy * p_camera.y() / p_camera.z());
       if (px.x() < 0 || px.y() < 0 || px.x() > camera.width || px.y() > camera.height) continue;
-      const Eigen::Vector3d now = p_map - T_map_camera.translation(), then = p_map - eye;
-      const double turned = std::acos(std::clamp(now.normalized().dot(then.normalized()), -1., 1.));
-      const double change = std::abs(std::log(now.norm() / then.norm())) + turned;
+      const double change = view_change(map, p_map, T_map_camera.translation());
       if (!(change <= kMostChange)) continue;
       out.push_back(
           {px.cast<float>(), map.descriptors.data() + row * map.descriptor_bytes, change});
@@ -130,9 +126,7 @@ SecondLook take_second_look(const GreyImage& image, FeatureDetector& detector,
   std::vector<Eigen::Vector2f> looks;
   looks.reserve(places.size() * kLooks);
   for (const Place& place : places) {
-    const Eigen::Vector2f middle =
-        camera.distorted() ? camera.distort(place.px.cast<double>()).cast<float>().eval()
-                           : place.px;
+    const Eigen::Vector2f middle = camera.seen(place.px);
     for (const Shift& around : kPlaces) {
       for (const Shift& step : kSteps) {
         looks.emplace_back(middle.x() + around.x * static_cast<float>(scale) + step.x,

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "runtime/localize/camera/camera_model.hpp"
+#include "runtime/localize/camera/grey_image.hpp"
+#include "runtime/localize/features/feature_detector.hpp"
+#include "runtime/localize/query/candidates.hpp"
+#include "runtime/localize/query/matching.hpp"
+#include "runtime/localize/solve/sighting.hpp"
+
+namespace zonepack::localize {
+
+// Finds the map in an image without the detector: the corners of a blurred, overexposed or noisy
+// image are not those that the map was made of, but what is there still looks like it. The image is
+// described at every fourth pixel, and each point of the candidates that the prior's camera should
+// see is looked for in its window: the nearest descriptor, clearly nearer than any that is not
+// beside it. Then the nearest of the pixels around it is taken. At most 120 points, of the best
+// candidates, those first that were seen from about where the camera is. Some 10 ms.
+//
+// Appends what it found to the features of `image`, which are no longer sorted, and gives a match
+// for each, sorted by feature. `pixels` is whole; `detector` describes anywhere.
+std::vector<Sighting> find_places(const GreyImage& pixels, FeatureDetector& detector,
+                                  const Candidates& candidates, const CameraModel& camera,
+                                  const QueryPrior& prior, const MatchOptions& options,
+                                  ImageFeatures& image);
+
+}  // namespace zonepack::localize

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/localize/query/place_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tests/support/image_changes.hpp"
+#include "tests/unit/runtime/localize/query/made_view.hpp"
+#include "tests/unit/runtime/localize/solve/made_sightings.hpp"
+
+namespace zonepack::localize {
+namespace {
+
+class PlaceSearchTest : public testing::Test {
+ protected:
+  struct Found {
+    std::vector<Sighting> matches;
+    ImageFeatures image;
+    int right = 0;  // within 2 px of where the map has the point
+  };
+  Found find(const GreyImage& image, const Pose2& prior) {
+    Candidates candidates;
+    candidates.best = {{&map_, 0}};
+    Found out;
+    out.image = detector_.detect(image, camera_);
+    out.matches = find_places(image, detector_, candidates, camera_,
+                              {prior, {0.01, 0, 0, 0.01, 0, 0.001}}, MatchOptions{}, out.image);
+    for (const Sighting& one : out.matches) {
+      const MapPoint& point = map_.points[one.row];
+      const Eigen::Vector2d off = one.px - Eigen::Vector2d(point.x_px, point.y_px);
+      out.right += off.norm() <= 2 ? 1 : 0;
+    }
+    return out;
+  }
+
+  const CameraModel camera_ = made_camera();
+  const GreyImage view_ = made_view();
+  FeatureDetector detector_{DetectorSettings{}};
+  const ImageFeatures features_ = detector_.detect(view_, camera_);
+  const MapFeatures map_ =
+      made_signature(features_, camera_, detector_.settings().descriptor_bytes());
+};
+
+TEST_F(PlaceSearchTest, FindsTheMapNearAPriorThatIsOff) {
+  const Found found = find(view_, {3.05, -2.05, 0.72});
+  EXPECT_GT(found.right, 60);
+  EXPECT_GT(found.right, 0.9 * static_cast<double>(found.matches.size()));
+}
+
+TEST_F(PlaceSearchTest, FindsItInABlurredImage) {
+  const Found found = find(*test_support::changed(view_, "blur:3"), {3.05, -2.05, 0.72});
+  EXPECT_GT(found.right, 30);
+  EXPECT_GT(found.right, 0.5 * static_cast<double>(found.matches.size()));
+}
+
+TEST_F(PlaceSearchTest, AddsAFeatureForEachMatchAndLeavesTheOthers) {
+  const Found found = find(view_, kPlace);
+  ASSERT_EQ(found.image.size(), features_.size() + found.matches.size());
+  EXPECT_EQ(found.image.descriptors.size(), found.image.size() * found.image.descriptor_bytes);
+  EXPECT_TRUE(std::equal(features_.px.begin(), features_.px.end(), found.image.px.begin()));
+  for (std::size_t i = 0; i < found.matches.size(); ++i) {
+    EXPECT_EQ(found.matches[i].feature, features_.size() + i);
+    EXPECT_EQ(found.image.px[features_.size() + i].cast<double>(), found.matches[i].px);
+  }
+}
+
+TEST_F(PlaceSearchTest, FindsNothingInBlankImagesOrBehindTheCamera) {
+  EXPECT_TRUE(find(test_support::filled(view_, 200), kPlace).matches.empty());
+  EXPECT_TRUE(find(view_, {3, -2, 0.7 + 3.14}).matches.empty());
+}
+
+TEST_F(PlaceSearchTest, LooksForAtMostSoManyPlaces) {
+  EXPECT_LE(find(view_, kPlace).matches.size(), 120U);
+}
+
+}  // namespace
+}  // namespace zonepack::localize
