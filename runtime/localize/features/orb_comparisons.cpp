@@ -155,8 +155,9 @@ void OrbComparisons::grid(int first_px, int step_px, int columns, int rows,
   };
   for (int y = 0; y < smoothed_.rows; ++y) {
     const std::uint8_t* line = smoothed_.ptr(y);
-    for (int x = 0; x < smoothed_.cols; ++x) {
-      plane_of(x, y)[y / step_px * wide + x / step_px] = line[x];
+    for (int left = 0; left < step_px; ++left) {
+      std::uint8_t* to = plane_of(left, y) + y / step_px * wide;
+      for (int x = left; x < smoothed_.cols; x += step_px) *to++ = line[x];
     }
   }
   const auto row_of = [&](int x, int y) {
