@@ -19,7 +19,7 @@ done
   --calibration calibration.yaml --truth base_groundtruth.txt --start truth --picture loop.svg \
   --beside "$data/rtabmap_baseline/hospital_scenario1_loop_thr100_ret10_inittrue.csv"
 rm rgb && ln -s "$source/tests/data/scenario1_loop/rgb" rgb  # the sample's, as the page's commands use them
-"$bin/zoneloc" query --map hospital-small --image rgb/1718021685.000000.jpg --calibration calibration.yaml \
-  --near 3.0,-8.5,30 --draw why.svg
+"$bin/zoneloc" query --map hospital-small --image rgb/1718021680.000000.jpg --calibration calibration.yaml \
+  --near 0.9,-9.4,-26 --draw why.svg
 rsvg-convert --width 520 why.svg --output why.png
 cp loop.svg why.png "$out"
