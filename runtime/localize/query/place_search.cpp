@@ -14,7 +14,9 @@
 namespace zonepack::localize {
 namespace {
 
-constexpr int kGrid_px = 4, kAround_px = kGrid_px / 2;
+constexpr int kLeastStep_px = 4;  // a descriptor bears to be off by half of it
+constexpr double kMostGrid =
+    20'000;  // places that are described, about: every fourth pixel of 640x480
 constexpr std::size_t kMostSought = 120, kMostPointsSought = 3;
 constexpr double kMostChangeSought = 0.8;  // view_change()
 constexpr double kSoughtApart_px = 6;      // points nearer to each other are one place
@@ -73,12 +75,17 @@ std::vector<SoughtPlace> places_sought(const std::vector<SoughtPoint>& points, d
   return out;
 }
 
+int step_of(const GreyImage& pixels) {
+  const double each = static_cast<double>(pixels.pixels.size()) / kMostGrid;
+  return std::max(kLeastStep_px, static_cast<int>(std::ceil(std::sqrt(each))));
+}
+
 // The image at every fourth pixel, row by row, and where in it a point is.
 class DescribedImage {
  public:
   DescribedImage(const GreyImage& pixels, FeatureDetector& detector, const CameraModel& camera)
       : beside2_(static_cast<float>(std::pow(kBeside_px * camera.fx / kUsualFocal_px, 2))),
-        grid_(detector.describe_grid(pixels, kGrid_px)) {
+        grid_(detector.describe_grid(pixels, step_of(pixels))) {
     for (int row = 0; row < grid_.rows; ++row) {
       Row line{static_cast<std::uint32_t>(px_.size()), 0, 1e9F, -1e9F};
       for (int column = 0; column < grid_.columns; ++column) {
@@ -133,8 +140,8 @@ class DescribedImage {
   // Of a place of the grid, in the image.
   Eigen::Vector2f seen_px(std::size_t place) const {
     const int number = static_cast<int>(place);
-    return {static_cast<float>(grid_.first_px + number % grid_.columns * kGrid_px),
-            static_cast<float>(grid_.first_px + number / grid_.columns * kGrid_px)};
+    return {static_cast<float>(grid_.first_px + number % grid_.columns * grid_.step_px),
+            static_cast<float>(grid_.first_px + number / grid_.columns * grid_.step_px)};
   }
 
   // What is described of a window: one run of each row that it touches.
@@ -190,9 +197,10 @@ std::vector<Sighting> find_places(const GreyImage& pixels, FeatureDetector& dete
     if (const auto one = described.find(place, candidates)) found.push_back(*one);
   }
   std::vector<Eigen::Vector2f> around;
+  const int reach = step_of(pixels) / 2;
   for (const DescribedImage::Found& one : found) {
-    for (int x = -kAround_px; x <= kAround_px; ++x) {
-      for (int y = -kAround_px; y <= kAround_px; ++y) {
+    for (int x = -reach; x <= reach; ++x) {
+      for (int y = -reach; y <= reach; ++y) {
         around.push_back(one.seen_px +
                          Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)));
       }

@@ -71,6 +71,40 @@ TEST_F(PlaceSearchTest, FindsNothingInBlankImagesOrBehindTheCamera) {
   EXPECT_TRUE(find(view_, {3, -2, 0.7 + 3.14}).matches.empty());
 }
 
+// 2560x1920 are described at every sixteenth pixel.
+TEST_F(PlaceSearchTest, FindsItInALargeImageAsWell) {
+  GreyImage large;
+  large.width = 4 * view_.width;
+  large.height = 4 * view_.height;
+  for (int y = 0; y < large.height; ++y) {
+    for (int x = 0; x < large.width; ++x) {
+      large.pixels.push_back(view_.pixels[static_cast<std::size_t>(y / 4 * view_.width + x / 4)]);
+    }
+  }
+  CameraModel camera = camera_;
+  camera.width = large.width;
+  camera.height = large.height;
+  camera.fx *= 4;
+  camera.fy *= 4;
+  camera.cx = 4 * camera.cx + 1.5;
+  camera.cy = 4 * camera.cy + 1.5;
+  ImageFeatures image = detector_.detect(large, camera);
+  const MapFeatures map = made_signature(image, camera, detector_.settings().descriptor_bytes());
+  Candidates candidates;
+  candidates.best = {{&map, 0}};
+  const std::vector<Sighting> matches =
+      find_places(large, detector_, candidates, camera, {kPlace, {0.001, 0, 0, 0.001, 0, 1e-5}},
+                  MatchOptions{}, image);
+  int right = 0;
+  for (const Sighting& one : matches) {
+    const Eigen::Vector2d off =
+        one.px - Eigen::Vector2d(map.points[one.row].x_px, map.points[one.row].y_px);
+    right += off.norm() <= 2 ? 1 : 0;
+  }
+  EXPECT_GT(right, 20);
+  EXPECT_GT(right, 0.8 * static_cast<double>(matches.size()));
+}
+
 TEST_F(PlaceSearchTest, LooksForAtMostSoManyPlaces) {
   EXPECT_LE(find(view_, kPlace).matches.size(), 120U);
 }
