@@ -11,7 +11,7 @@ namespace zonepack::localize {
 namespace {
 
 constexpr int kKernel_px = 7, kKernelReach_px = kKernel_px / 2;
-constexpr std::size_t kBits = OrbComparisons::kBytes * 8;
+constexpr std::size_t kBits = std::size_t{OrbComparisons::kBytes} * 8;
 
 // As GFTT gives it: without direction, on the image itself.
 cv::KeyPoint keypoint(float x, float y, int number) { return {x, y, 3, -1, 0, 0, number}; }

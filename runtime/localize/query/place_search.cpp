@@ -140,8 +140,9 @@ class DescribedImage {
   // Of a place of the grid, in the image.
   Eigen::Vector2f seen_px(std::size_t place) const {
     const int number = static_cast<int>(place);
-    return {static_cast<float>(grid_.first_px + number % grid_.columns * grid_.step_px),
-            static_cast<float>(grid_.first_px + number / grid_.columns * grid_.step_px)};
+    const int row = number / grid_.columns, column = number % grid_.columns;
+    return {static_cast<float>(grid_.first_px + column * grid_.step_px),
+            static_cast<float>(grid_.first_px + row * grid_.step_px)};
   }
 
   // What is described of a window: one run of each row that it touches.
