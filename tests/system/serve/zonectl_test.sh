@@ -78,12 +78,12 @@ check 'JSON of what has none' 2 '' "$zonectl" pin b --json
 check 'dump' 0 ': 6 bytes$' "$zonectl" dump "$work/recording"
 [ "$(cat "$work/recording")" = frames ]
 check 'dump into nowhere' 1 'cannot be written' "$zonectl" dump "$work/no/folder"
-check 'events' 0 'zone_wanted b$' timeout --preserve-status 3 "$zonectl" events
-timeout --preserve-status 3 "$zonectl" events --json >"$work/events.jsonl" || failed=1
+check 'events' 0 'zone_wanted b$' timeout -k 60 --preserve-status 3 "$zonectl" events
+timeout -k 60 --preserve-status 3 "$zonectl" events --json >"$work/events.jsonl" || failed=1
 jq -se 'length > 0 and all(.event == "zone_wanted" and .zone == "b" and has("cycle") and has("charged_bytes"))' \
   "$work/events.jsonl" >/dev/null || { echo "events as JSON: $(head -3 "$work/events.jsonl")"; failed=1; }
 check 'events into nowhere' 1 'cannot be written' "$zonectl" events --json "$work/no/events"
-check 'watch without a terminal' 0 '^in a  x 1.00  y 2.00 m .* NOT KEEPING UP' timeout --preserve-status 3 "$zonectl" watch
+check 'watch without a terminal' 0 '^in a  x 1.00  y 2.00 m .* NOT KEEPING UP' timeout -k 60 --preserve-status 3 "$zonectl" watch
 # In a terminal: pictures until interrupted, and the terminal as it was before.
 TERM=xterm script -qefc "exec '$zonectl' watch" "$work/seen" >/dev/null 2>&1 &
 watching=$!
@@ -92,6 +92,12 @@ for ((tries = 0; tries < 600; tries++)); do
   sleep 0.1
 done
 pkill -INT -P $watching
+for ((tries = 0; tries < 600; tries++)); do
+  if ! kill -0 $watching 2>/dev/null; then break; fi
+  sleep 0.1
+done
+if pkill -KILL -P $watching; then echo 'watch: still there a minute after SIGINT'; failed=1; fi
+if kill -KILL $watching 2>/dev/null; then echo 'watch: script outlived it by a minute'; failed=1; fi
 got=0
 wait $watching || got=$?
 [ $got = 0 ] || { echo "watch: exit $got when interrupted, expected 0"; failed=1; }
