@@ -83,7 +83,8 @@ timeout -k 60 --preserve-status 3 "$zonectl" events --json >"$work/events.jsonl"
 jq -se 'length > 0 and all(.event == "zone_wanted" and .zone == "b" and has("cycle") and has("charged_bytes"))' \
   "$work/events.jsonl" >/dev/null || { echo "events as JSON: $(head -3 "$work/events.jsonl")"; failed=1; }
 check 'events into nowhere' 1 'cannot be written' "$zonectl" events --json "$work/no/events"
-check 'watch without a terminal' 0 '^in a  x 1.00  y 2.00 m .* NOT KEEPING UP' timeout -k 60 --preserve-status 3 "$zonectl" watch
+check 'watch without a terminal' 0 '^in a  x 1.00  y 2.00 m .* NOT KEEPING UP' \
+  timeout -k 60 --preserve-status 3 "$zonectl" watch
 # In a terminal: pictures until interrupted, and the terminal as it was before.
 TERM=xterm script -qefc "exec '$zonectl' watch" "$work/seen" >/dev/null 2>&1 &
 watching=$!
