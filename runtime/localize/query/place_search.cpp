@@ -15,8 +15,7 @@ namespace zonepack::localize {
 namespace {
 
 constexpr int kLeastStep_px = 4;  // a descriptor bears to be off by half of it
-constexpr double kMostGrid =
-    20'000;  // places that are described, about: every fourth pixel of 640x480
+constexpr double kMostGrid = 20'000;  // places that are described, about
 constexpr std::size_t kMostSought = 120, kMostPointsSought = 3;
 constexpr double kMostChangeSought = 0.8;  // view_change()
 constexpr double kSoughtApart_px = 6;      // points nearer to each other are one place

@@ -12,13 +12,13 @@
 
 namespace zonepack::localize {
 
-// Finds the map in an image without the detector: the corners of a blurred, overexposed or noisy
-// image are not those that the map was made of, but what is there still looks like it. The image is
-// described at every fourth pixel (some 20,000 places, farther apart in a larger image), and each
-// point of the candidates that the prior's camera should see is looked for in its window: the
-// nearest descriptor, clearly nearer than any that is not beside it. Then the nearest of the pixels
-// around it is taken. At most 120 points, of the best candidates, those first that were seen from
-// about where the camera is. Some 10 ms.
+// Finds the map in an image without the detector: a blurred, overexposed or noisy image has other
+// corners than those that the map was made of, but the places of the map's points still look like
+// them. The image is described at every fourth pixel (some 20,000 places, farther apart in a larger
+// image), and each point that the prior's camera should see is looked for in its window. A place is
+// taken if its descriptor is the nearest to the point's, and clearly nearer than that of any place
+// more than 10 px away; then the best pixel next to it. At most 120 points, of the best candidates,
+// those first that were seen from about where the camera is. Some 5 to 10 ms.
 //
 // Appends what it found to the features of `image`, which are no longer sorted, and gives a match
 // for each, sorted by feature. `pixels` is whole; `detector` describes anywhere.
