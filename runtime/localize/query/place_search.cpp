@@ -14,7 +14,7 @@
 namespace zonepack::localize {
 namespace {
 
-constexpr int kLeastStep_px = 4;  // a descriptor bears to be off by half of it
+constexpr int kLeastStep_px = 4;      // a descriptor bears to be off by half of it
 constexpr double kMostGrid = 20'000;  // places that are described, about
 constexpr std::size_t kMostSought = 120, kMostPointsSought = 3;
 constexpr double kMostChangeSought = 0.8;  // view_change()
