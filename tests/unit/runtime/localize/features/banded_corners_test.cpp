@@ -4,21 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/features2d.hpp>
-#include <opencv2/imgproc.hpp>
 #include <tuple>
+
+#include "tests/unit/runtime/localize/features/made_blobs.hpp"
 
 namespace zonepack::localize {
 namespace {
-
-// Blobs of all sizes; the height is no multiple of a band's.
-cv::Mat textured(int width, int height) {
-  cv::Mat noise(height, width, CV_8UC1), image;
-  cv::RNG random(7);
-  random.fill(noise, cv::RNG::UNIFORM, 0, 256);
-  cv::GaussianBlur(noise, image, {0, 0}, 2.5);
-  cv::normalize(image, image, 0, 255, cv::NORM_MINMAX);
-  return image;
-}
 
 class BandedCornersAgainstOpenCv
     : public testing::TestWithParam<std::tuple<int, double, bool, double>> {};
@@ -29,7 +20,7 @@ TEST_P(BandedCornersAgainstOpenCv, FindTheSameCornersInTheSameOrder) {
   settings.quality = 0.01;
   std::tie(settings.block_px, settings.min_distance_px, settings.harris, settings.harris_k) =
       GetParam();
-  const cv::Mat image = textured(333, 247);
+  const cv::Mat image = made_blobs(333, 247, 7, 2.5);  // the height is no multiple of a band's
   std::vector<cv::KeyPoint> ours, theirs;
   BandedCorners(settings).detect(image, ours);
   cv::GFTTDetector::create(settings.max_features, settings.quality, settings.min_distance_px,

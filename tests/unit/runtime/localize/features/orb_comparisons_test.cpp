@@ -7,9 +7,10 @@
 #include <array>
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 #include <vector>
+
+#include "tests/unit/runtime/localize/features/made_blobs.hpp"
 
 namespace zonepack::localize {
 namespace {
@@ -20,14 +21,7 @@ cv::Ptr<cv::ORB> orb(int wta_k, int patch_px) {
   return cv::ORB::create(500, 2, 3, kEdge_px, 0, wta_k, cv::ORB::HARRIS_SCORE, patch_px, 20);
 }
 
-cv::Mat blobs(int width, int height) {
-  cv::Mat noise(height, width, CV_8UC1), image;
-  cv::RNG random(11);
-  random.fill(noise, cv::RNG::UNIFORM, 0, 256);
-  cv::GaussianBlur(noise, image, {0, 0}, 3);
-  cv::normalize(image, image, 0, 255, cv::NORM_MINMAX);
-  return image;
-}
+cv::Mat blobs(int width, int height) { return made_blobs(width, height, 11, 3); }
 
 class OrbComparisonsAgainstOpenCv : public testing::TestWithParam<int> {};
 
