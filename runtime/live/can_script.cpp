@@ -37,53 +37,53 @@ struct FaultText {
 
 const Fields<CanScript>& script_fields() {
   static const Fields<CanScript> fields = {
-      {"log", &CanScript::log, 0, 0, "", ""},
-      {"loops", &CanScript::loops, 1, 1e6, "", ""},
-      {"queue", &CanScript::queue, 0, 1e6, "", ""},
+      {"log", in<&CanScript::log>, 0, 0, "", ""},
+      {"loops", in<&CanScript::loops>, 1, 1e6, "", ""},
+      {"queue", in<&CanScript::queue>, 0, 1e6, "", ""},
   };
   return fields;
 }
 
 const Fields<SimWireSettings>& wire_fields() {
   static const Fields<SimWireSettings> fields = {
-      {"bit_rate", &SimWireSettings::bit_rate, 0, 1e6, "bit/s", ""},
-      {"data_bit_rate", &SimWireSettings::data_bit_rate, 0, 1e7, "bit/s", ""},
+      {"bit_rate", in<&SimWireSettings::bit_rate>, 0, 1e6, "bit/s", ""},
+      {"data_bit_rate", in<&SimWireSettings::data_bit_rate>, 0, 1e7, "bit/s", ""},
   };
   return fields;
 }
 
 const Fields<DriveSettings>& drive_fields() {
   static const Fields<DriveSettings> fields = {
-      {"period", &DriveSettings::period_s, 0.0001, 10, "s", ""},
+      {"period", in<&DriveSettings::period_s>, 0.0001, 10, "s", ""},
   };
   return fields;
 }
 
 const Fields<DriveLeg>& leg_fields() {
   static const Fields<DriveLeg> fields = {
-      {"for", &DriveLeg::for_s, 0.001, 1e6, "s", ""},
-      {"speed", &DriveLeg::speed_m_s, -20, 20, "m/s", ""},
-      {"yaw_rate", &DriveLeg::yaw_rate_rad_s, -20, 20, "rad/s", ""},
+      {"for", in<&DriveLeg::for_s>, 0.001, 1e6, "s", ""},
+      {"speed", in<&DriveLeg::speed_m_s>, -20, 20, "m/s", ""},
+      {"yaw_rate", in<&DriveLeg::yaw_rate_rad_s>, -20, 20, "rad/s", ""},
   };
   return fields;
 }
 
 const Fields<ScriptTraffic>& traffic_fields() {
   static const Fields<ScriptTraffic> fields = {
-      {"id", &ScriptTraffic::id, 0, 0x1FFFFFFF, "", ""},
-      {"extended", &ScriptTraffic::extended, 0, 0, "", ""},
-      {"period", &ScriptTraffic::period_s, 0.00001, 1000, "s", ""},
-      {"length", &ScriptTraffic::length, 0, 8, "bytes", ""},
+      {"id", in<&ScriptTraffic::id>, 0, 0x1FFFFFFF, "", ""},
+      {"extended", in<&ScriptTraffic::extended>, 0, 0, "", ""},
+      {"period", in<&ScriptTraffic::period_s>, 0.00001, 1000, "s", ""},
+      {"length", in<&ScriptTraffic::length>, 0, 8, "bytes", ""},
   };
   return fields;
 }
 
 const Fields<FaultText>& fault_fields() {
   static const Fields<FaultText> fields = {
-      {"kind", &FaultText::kind, 0, 0, "", ""},
-      {"at", &FaultText::at_s, 0, 1e7, "s", ""},
-      {"for", &FaultText::for_s, 0, 1e7, "s", ""},
-      {"count", &FaultText::count, 0, 1e9, "frames", ""},
+      {"kind", in<&FaultText::kind>, 0, 0, "", ""},
+      {"at", in<&FaultText::at_s>, 0, 1e7, "s", ""},
+      {"for", in<&FaultText::for_s>, 0, 1e7, "s", ""},
+      {"count", in<&FaultText::count>, 0, 1e9, "frames", ""},
   };
   return fields;
 }

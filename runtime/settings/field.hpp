@@ -14,24 +14,39 @@ namespace zonepack {
 // A largest value that limits nothing: SETTINGS.md says "or more".
 inline constexpr double kNoMost = 9e15;
 
-// One key of a section: its name, where its value goes, what is allowed, what it means. A number
-// must lie in [least, most]; other kinds ignore these.
+// Where a key's value stands. A visitor of these is compiled once, not for each section.
+using FieldValue = std::variant<double*, std::uint32_t*, std::uint64_t*, bool*, std::string*,
+                                std::vector<std::string>*, std::optional<ByteCount>*,
+                                PayloadChoice*, OdometryModel*, WheelUnit*, AngleUnit*, ByteOrder*,
+                                SignalType*, ReadMode*, GpioBias*, SafeLevel*, EvictionRule*>;
+
+// What is allowed of a key, whatever its section. A number must lie in [least, most]; other kinds
+// ignore these.
+struct FieldLimits {
+  double least;
+  double most;
+  const char* unit;
+};
+
+// One key of a section: its name, where its value stands in the section, what is allowed, what it
+// means.
 template <typename Section>
 struct Field {
-  using Member =
-      std::variant<double Section::*, std::uint32_t Section::*, std::uint64_t Section::*,
-                   bool Section::*, std::string Section::*, std::vector<std::string> Section::*,
-                   std::optional<ByteCount> Section::*, PayloadChoice Section::*,
-                   OdometryModel Section::*, WheelUnit Section::*, AngleUnit Section::*,
-                   ByteOrder Section::*, SignalType Section::*, ReadMode Section::*,
-                   GpioBias Section::*, SafeLevel Section::*, EvictionRule Section::*>;
   const char* key;
-  Member member;
+  FieldValue (*value)(Section&);
   double least;
   double most;
   const char* unit;
   const char* meaning;
+
+  FieldLimits limits() const noexcept { return {least, most, unit}; }
 };
+
+// For Field::value: the member of a section.
+template <auto kMember, typename Section>
+FieldValue in(Section& section) {
+  return &(section.*kMember);
+}
 
 template <typename Section>
 using Fields = std::vector<Field<Section>>;

@@ -7,12 +7,10 @@
 #include <string_view>
 
 #include "runtime/settings/field.hpp"
-#include "runtime/settings/yaml_section.hpp"
+#include "runtime/settings/yaml_value.hpp"
 
 namespace zonepack {
 namespace {
-
-constexpr double kNoLimit = 9e15;  // a bound of settings_tables.cpp that limits nothing
 
 template <typename Enum>
 std::string words_of() {
@@ -60,86 +58,80 @@ std::string hexadecimal(double value) {
   return digits;
 }
 
-// Allowed values and the default, by kind.
-struct FieldKind {
-  std::string_view key;
-  double least, most;
-  std::string_view unit;
+std::string bound(const char* key, const FieldLimits& limits, double value) {
+  if (is_can_id(key)) return hexadecimal(value);
+  const std::string size = size_text(value, limits.unit);
+  return size.empty() ? plain_text(value) : size;
+}
 
-  std::string bound(double value) const {
-    if (is_can_id(key)) return hexadecimal(value);
-    const std::string size = size_text(value, unit);
-    return size.empty() ? plain_text(value) : size;
+std::string range_text(const char* key, const FieldLimits& limits) {
+  const std::string unit = limits.unit;
+  const bool sized = !size_text(limits.most, unit).empty();
+  std::string text;
+  if (limits.most < kNoMost) {
+    text = bound(key, limits, limits.least) + " to " + bound(key, limits, limits.most);
+  } else if (limits.least <= -kNoMost) {
+    return "any number";
+  } else {
+    text = bound(key, limits, limits.least) + " or more";
   }
-  std::string range() const {
-    const bool sized = !size_text(most, unit).empty();
-    std::string text;
-    if (most < kNoLimit) {
-      text = bound(least) + " to " + bound(most);
-    } else if (least <= -kNoLimit) {
-      return "any number";
-    } else {
-      text = bound(least) + " or more";
-    }
-    return unit.empty() || (sized && most < kNoLimit) ? text : text + " " + std::string(unit);
-  }
-  std::string allowed(double) const { return range(); }
-  std::string allowed(std::uint32_t) const { return range(); }
-  std::string allowed(std::uint64_t) const { return range(); }
-  static std::string allowed(bool) { return "true, false"; }
-  static std::string allowed(const std::string&) { return "text"; }
-  static std::string allowed(const std::vector<std::string>&) { return "list of texts"; }
-  static std::string allowed(const std::optional<ByteCount>&) {
-    return "bytes, or a number with KiB, MiB, GiB or K, M, G: 6.8MiB; or kB, MB, GB (of 1000)";
-  }
-  static std::string allowed(const PayloadChoice&) {
-    return "list of " + payload_words(kEveryPayload);
-  }
-  template <typename Enum>
-  static std::string allowed(Enum) {
-    return words_of<Enum>();
-  }
+  return unit.empty() || (sized && limits.most < kNoMost) ? text : text + " " + unit;
+}
 
-  // Defaults stand as a settings file takes them. One that is not allowed stands for none.
-  template <typename Number>
-  std::string number(Number value) const {
-    const auto real = static_cast<double>(value);
-    if (real < least || real > most) return "required";
-    if (is_can_id(key)) return hexadecimal(real);
-    const std::string size = size_text(real, unit);
-    return number_text(real) + (size.empty() ? "" : " (" + size + ")");
+// Defaults stand as a settings file takes them. One that is not allowed stands for none.
+std::string default_text(const char* key, const FieldLimits& limits, double value) {
+  if (value < limits.least || value > limits.most) return "required";
+  if (is_can_id(key)) return hexadecimal(value);
+  const std::string size = size_text(value, limits.unit);
+  return number_text(value) + (size.empty() ? "" : " (" + size + ")");
+}
+
+// "ALLOWED | DEFAULT" of a value that has its default, by kind.
+struct ValueDescription {
+  const char* key;
+  const FieldLimits& limits;
+
+  std::string number(double value) const {
+    return range_text(key, limits) + " | " + default_text(key, limits, value);
   }
-  std::string shown(double value) const { return number(value); }
-  std::string shown(std::uint32_t value) const { return number(value); }
-  std::string shown(std::uint64_t value) const { return number(value); }
-  static std::string shown(bool value) { return value ? "true" : "false"; }
-  static std::string shown(const std::string& value) { return value.empty() ? "-" : value; }
-  static std::string shown(const std::vector<std::string>&) { return "[]"; }
-  static std::string shown(const std::optional<ByteCount>&) {
-    return "the smallest that the map allows; with max_signatures, the whole map; refused beyond "
+  std::string operator()(const double* value) const { return number(*value); }
+  std::string operator()(const std::uint32_t* value) const { return number(*value); }
+  std::string operator()(const std::uint64_t* value) const {
+    return number(static_cast<double>(*value));
+  }
+  std::string operator()(const bool* value) const {
+    return std::string("true, false | ") + (*value ? "true" : "false");
+  }
+  std::string operator()(const std::string* value) const {
+    return "text | " + (value->empty() ? "-" : *value);
+  }
+  std::string operator()(const std::vector<std::string>*) const { return "list of texts | []"; }
+  std::string operator()(const std::optional<ByteCount>*) const {
+    return "bytes, or a number with KiB, MiB, GiB or K, M, G: 6.8MiB; or kB, MB, GB (of 1000) | "
+           "the smallest that the map allows; with max_signatures, the whole map; refused beyond "
            "a quarter of the computer's memory, and printed";
   }
-  static std::string shown(const PayloadChoice& value) {
-    return "[" + payload_words(value.mask) + "]";
+  std::string operator()(const PayloadChoice* value) const {
+    return "list of " + payload_words(kEveryPayload) + " | [" + payload_words(value->mask) + "]";
   }
   template <typename Enum>
-  static std::string shown(Enum value) {
-    return EnumWords<Enum>::kWords[static_cast<std::size_t>(value)];
+  std::string operator()(const Enum* value) const {
+    return words_of<Enum>() + " | " + EnumWords<Enum>::kWords[static_cast<std::size_t>(*value)];
   }
 };
 
+std::string row(const char* key, const FieldLimits& limits, const FieldValue& value,
+                const char* meaning) {
+  return std::string("| ") + key + " | " + std::visit(ValueDescription{key, limits}, value) +
+         " | " + meaning + " |\n";
+}
+
 template <typename Section>
 std::string rows(const Fields<Section>& fields) {
-  const Section defaults{};
+  Section defaults{};
   std::string text;
   for (const Field<Section>& field : fields) {
-    const FieldKind kind{field.key, field.least, field.most, field.unit};
-    std::visit(
-        [&](auto member) {
-          text += "| " + std::string(field.key) + " | " + kind.allowed(defaults.*member) + " | " +
-                  kind.shown(defaults.*member) + " | " + field.meaning + " |\n";
-        },
-        field.member);
+    text += row(field.key, field.limits(), field.value(defaults), field.meaning);
   }
   return text;
 }

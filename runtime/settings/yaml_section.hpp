@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "platform/base/failure.hpp"
 #include "runtime/settings/field.hpp"
 
 namespace zonepack {
@@ -64,14 +63,7 @@ class YamlSection {
   template <typename Section>
   void read(const Fields<Section>& fields, Section& into) {
     for (const Field<Section>& field : fields) {
-      const YAML::Node node = take(field.key);
-      if (!node.IsDefined()) continue;
-      std::visit(
-          [&](auto member) {
-            const auto parsed = parse(node, field.least, field.most, field.unit, into.*member);
-            if (!parsed) faults_.add(node.Mark(), path_of(field.key), parsed.error().message);
-          },
-          field.member);
+      read(field.key, field.limits(), field.value(into));
     }
   }
 
@@ -87,27 +79,7 @@ class YamlSection {
   YAML::Mark mark() const { return mark_; }
 
  private:
-  // Stores the value. A failure says what is wrong with it; the caller adds the place.
-  static Outcome<void> parse(const YAML::Node&, double least, double most, const char* unit,
-                             double&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*, std::uint32_t&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*, std::uint64_t&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*, bool&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*, std::string&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*,
-                             std::vector<std::string>&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*,
-                             std::optional<ByteCount>&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*, PayloadChoice&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*, OdometryModel&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*, WheelUnit&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*, AngleUnit&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*, ByteOrder&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*, SignalType&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*, ReadMode&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*, GpioBias&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*, SafeLevel&);
-  static Outcome<void> parse(const YAML::Node&, double, double, const char*, EvictionRule&);
+  void read(const char* key, const FieldLimits& limits, const FieldValue& into);
 
   std::string path_;
   FaultList& faults_;
@@ -118,12 +90,5 @@ class YamlSection {
   std::vector<bool> asked_;
   std::vector<std::string> known_;
 };
-
-// "4", "0.413", "1e+12": the shortest text that reads back as the same number.
-std::string number_text(double value);
-
-// A field's allowed values in words: "0.01 to 20 m", "one of: little, big".
-std::string allowed_text(double least, double most, const char* unit);
-std::string payload_words(PayloadMask mask);
 
 }  // namespace zonepack

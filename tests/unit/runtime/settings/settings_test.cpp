@@ -53,22 +53,27 @@ TEST(Settings, TheExampleNeedsNoEdit) {
   EXPECT_EQ(loaded.settings.map.path, "");
 }
 
+bool are_equal(const FieldValue& a, const FieldValue& b) {
+  return std::visit(
+      [&](auto* value) {
+        const auto* other = std::get<decltype(value)>(b);
+        if constexpr (std::is_same_v<decltype(value), PayloadChoice*>) {
+          return value->mask == other->mask;
+        } else {
+          return *value == *other;
+        }
+      },
+      a);
+}
+
 // Every key of a table is in the example, and its value there is the default.
 template <typename Section>
 void expect_defaults(const char* name, const Fields<Section>& fields, const Section& loaded) {
   const std::string text = text_of(kExample);
-  const Section defaults{};
+  Section defaults{}, read = loaded;
   for (const Field<Section>& field : fields) {
     EXPECT_THAT(text, HasSubstr("  " + (std::string(field.key) + ": "))) << name;
-    EXPECT_TRUE(std::visit(
-        [&](auto member) {
-          if constexpr (std::is_same_v<decltype(member), PayloadChoice Section::*>) {
-            return (loaded.*member).mask == (defaults.*member).mask;
-          } else {
-            return loaded.*member == defaults.*member;
-          }
-        },
-        field.member))
+    EXPECT_TRUE(are_equal(field.value(read), field.value(defaults)))
         << name << "." << field.key << " differs from its default";
   }
 }
