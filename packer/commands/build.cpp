@@ -14,9 +14,9 @@
 
 #include "packer/build/leftovers.hpp"
 #include "packer/build/map_builder.hpp"
+#include "packer/commands/options.hpp"
 #include "packer/commands/session_options.hpp"
 #include "packer/commands/source_options.hpp"
-#include "packer/console/options.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/words.hpp"
 #include "platform/base/shell_word.hpp"

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "packer/commands/options.hpp"
 #include "packer/commands/report.hpp"
 #include "packer/commands/source_options.hpp"
-#include "packer/console/options.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/text_table.hpp"
 #include "packer/console/words.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "packer/console/options.hpp"
+#include "packer/commands/options.hpp"
 #include "packer/console/text_table.hpp"
 #include "packer/console/words.hpp"
 #include "packer/inspect/map_diff.hpp"

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "packer/console/options.hpp"
+#include "packer/commands/options.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/export/nvblox_export.hpp"
 #include "packer/export/zone_export.hpp"

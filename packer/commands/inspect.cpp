@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "packer/console/options.hpp"
+#include "packer/commands/options.hpp"
 #include "packer/inspect/map_inspection.hpp"
 #include "packer/inspect/pack_inspection.hpp"
 #include "platform/command_line/command_line.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "packer/console/options.hpp"
+#include "packer/commands/options.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "packer/console/output_path.hpp"
+#include "packer/console/words.hpp"
 #include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
 
@@ -60,17 +61,6 @@ CLI::Option* add_payload_option(CLI::App& app, const std::string& name, PayloadM
       .add_option_function<std::string>(
           name, [&target](const std::string& text) { target = parse_payload(text); }, help)
       ->type_name("LIST");
-}
-
-std::string payload_text(PayloadMask mask) {
-  std::string text;
-  for (std::uint32_t k = 1; k < kPayloadKinds; ++k) {
-    const auto kind = static_cast<fb::PayloadKind>(k);
-    if ((mask & mask_of(kind)) == 0) continue;
-    if (!text.empty()) text += ',';
-    text += zonepack::to_string(kind);
-  }
-  return text;
 }
 
 void JsonOutput::add_option(CLI::App& app) {

@@ -44,9 +44,6 @@ CLI::Option* add_choice_option(CLI::App& app, const std::string& name, Value& ta
       ->type_name("POLICY");
 }
 
-// "features,scan,grid".
-std::string payload_text(PayloadMask mask);
-
 // The destination of --json: FILE, standard output for "-", or nowhere when empty.
 class JsonOutput {
  public:

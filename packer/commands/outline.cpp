@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "packer/commands/options.hpp"
 #include "packer/commands/source_options.hpp"
-#include "packer/console/options.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/words.hpp"
 #include "packer/outline/map_drawing.hpp"

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "packer/build/leftovers.hpp"
-#include "packer/console/options.hpp"
+#include "packer/commands/options.hpp"
 #include "packer/console/words.hpp"
 #include "platform/command_line/command_line.hpp"
 

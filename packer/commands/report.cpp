@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "packer/commands/options.hpp"
 #include "packer/commands/source_options.hpp"
-#include "packer/console/options.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/decode/map_reader.hpp"
 #include "packer/preview/ground.hpp"

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "packer/build/map_builder.hpp"
+#include "packer/commands/options.hpp"
 #include "packer/commands/report.hpp"
 #include "packer/commands/source_options.hpp"
-#include "packer/console/options.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/words.hpp"
 #include "packer/outline/map_drawing.hpp"

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "packer/build/provenance.hpp"
+#include "packer/commands/options.hpp"
 #include "packer/commands/report.hpp"
-#include "packer/console/options.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/text_table.hpp"
 #include "packer/console/words.hpp"

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "packer/commands/options.hpp"
 #include "packer/commands/session_options.hpp"
 #include "packer/commands/source_options.hpp"
-#include "packer/console/options.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/words.hpp"
 #include "packer/update/map_update.hpp"

@@ -6,7 +6,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "packer/console/options.hpp"
+#include "packer/commands/options.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/words.hpp"
 #include "packer/decode/map_reader.hpp"

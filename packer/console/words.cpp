@@ -24,6 +24,17 @@ std::string size_text(ByteCount bytes) {
   return bytes < kMiB / 100 ? text : text + " (" + mib_text(bytes) + " MiB)";
 }
 
+std::string payload_text(PayloadMask mask) {
+  std::string text;
+  for (std::uint32_t k = 1; k < kPayloadKinds; ++k) {
+    const auto kind = static_cast<fb::PayloadKind>(k);
+    if ((mask & mask_of(kind)) == 0) continue;
+    if (!text.empty()) text += ',';
+    text += zonepack::to_string(kind);
+  }
+  return text;
+}
+
 std::vector<std::size_t> natural_order(const std::vector<std::string>& names) {
   std::vector<std::size_t> order(names.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "packer/console/options.hpp"
 #include "packer/console/text_table.hpp"
 #include "packer/console/words.hpp"
 #include "packer/decode/map_reader.hpp"

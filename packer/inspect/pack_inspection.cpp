@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "packer/console/options.hpp"
 #include "packer/console/text_table.hpp"
 #include "packer/console/words.hpp"
 #include "packer/decode/map_reader.hpp"

@@ -108,7 +108,7 @@ ARROWS = {
                      " runtime/pack_format/file",
     "packer/export": "packer/decode packer/record platform/base runtime/pack_format",
     "packer/preview": "packer/console packer/decode packer/outline packer/zones platform/base runtime/report",
-    "packer/console": "platform platform/base runtime/pack_format",
+    "packer/console": "platform/base runtime/pack_format",
     "packer/inspect": "packer/console packer/decode packer/verify platform/base runtime/pack_format/file",
     "packer/suggest": "packer/zones runtime/pack_format",
     "packer/tune": "packer/console packer/decode packer/encode packer/outline packer/preview packer/update packer/zones"
@@ -130,11 +130,10 @@ FOREIGN = {
     r"sodium": "runtime/pack_format/file runtime/run",
     r"yaml-cpp/": "packer/outline runtime/settings runtime/live runtime/localize/camera",
     r"Eigen/": "packer/align packer/sources/stella runtime/calibrate runtime/localize/camera runtime/localize/features runtime/localize/solve runtime/localize/query runtime/localize/check",
-    r"CLI/": "platform/command_line runtime/zoned runtime/ctl runtime/localize/zoneloc packer packer/commands"
-             " packer/console",
+    r"CLI/": "platform/command_line runtime/zoned runtime/ctl runtime/localize/zoneloc packer packer/commands",
     r"sqlite3\.h": "packer/sources/sqlite packer/export",
     r"zlib\.h": "packer/sources/rtabmap packer/preview",
-    r"nlohmann/": "packer/sources/stella packer/commands packer/console packer/inspect packer/outline packer/verify packer/zones",
+    r"nlohmann/": "packer/sources/stella packer/commands packer/inspect packer/outline packer/verify packer/zones",
     r"opencv": "runtime/localize/features",
     r"(jpeglib|jerror|png)\.h": "packer/outline runtime/localize/camera runtime/localize/explain",
 }
