@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "runtime/localize/features/hamming.hpp"
+#include "runtime/localize/query/feature_bands.hpp"
 #include "runtime/localize/query/feature_grid.hpp"
 #include "runtime/localize/query/search_windows.hpp"
 
@@ -115,12 +116,7 @@ std::vector<Sighting> match_in_windows(const ImageFeatures& image,
   const Metric metric{options.binary, image.descriptor_bytes};
   const double most = options.most_distance * metric.unit();
   SearchWindows windows(camera, prior, floor_z_m, options);
-  std::vector<std::uint16_t> distances(image.size());
-  std::vector<float> columns, lines;
-  for (const Eigen::Vector2f& px : image.px) {
-    columns.push_back(px.x());
-    lines.push_back(px.y());
-  }
+  FeatureBands bands(image);
   std::vector<Best> of_feature(image.size());
   std::vector<Best> of_row;
   std::vector<Sighting> out;
@@ -132,21 +128,16 @@ std::vector<Sighting> match_in_windows(const ImageFeatures& image,
     for (std::uint32_t row = 0; row < map.points.size(); ++row) {
       SearchWindows::Window window;
       if (!windows.find(point_of(map.points[row]), window)) continue;
-      const float left = window.middle.x() - window.half.x();
-      const float right = window.middle.x() + window.half.x();
-      const auto first = static_cast<std::uint32_t>(
-          std::lower_bound(columns.begin(), columns.end(), left) - columns.begin());
-      const auto end = static_cast<std::uint32_t>(
-          std::upper_bound(columns.begin(), columns.end(), right) - columns.begin());
-      metric.rows(map.descriptors.data() + row * metric.bytes, image.descriptor(first), end - first,
-                  distances.data() + first);
-      const float top = window.middle.y() - window.half.y();
-      const float bottom = window.middle.y() + window.half.y();
-      for (std::uint32_t i = first; i < end; ++i) {
-        if (lines[i] < top || lines[i] > bottom) continue;
-        of_row[row].offer(i, distances[i]);
-        of_feature[i].offer(row, distances[i]);
-      }
+      const std::uint8_t* const descriptor = map.descriptors.data() + row * metric.bytes;
+      bands.for_each_inside(
+          window,
+          [&](const std::uint8_t* rows, std::size_t count, std::uint16_t* distances) {
+            metric.rows(descriptor, rows, count, distances);
+          },
+          [&](std::uint32_t feature, std::uint16_t distance) {
+            of_row[row].offer(feature, distance);
+            of_feature[feature].offer(row, distance);
+          });
     }
     for (std::uint32_t row = 0; row < of_row.size(); ++row) {
       const Best& best = of_row[row];

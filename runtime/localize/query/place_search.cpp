@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -96,7 +97,6 @@ class DescribedImage {
       rows_.push_back(line);
     }
     least_.resize(px_.size());
-    point_.resize(px_.size());
   }
 
   struct Found {
@@ -111,9 +111,12 @@ class DescribedImage {
     for (const Run& run : runs_) {
       inside += run.end - run.first;
       compare(place, run, candidates);
-      for (std::uint32_t i = run.first; i < run.end; ++i) {
-        if (least_[i] < least) least = least_[i], best = i;
-      }
+      const auto from = least_.begin() + run.first, to = least_.begin() + run.end;
+      const std::uint16_t here = std::accumulate(from, to, std::uint16_t{0xFFFF},
+                                                 [](auto a, auto b) { return std::min(a, b); });
+      if (here >= least) continue;
+      least = here;
+      best = static_cast<std::uint32_t>(std::find(from, to, here) - least_.begin());
     }
     const double unit = static_cast<double>(grid_.descriptor_bytes) / 32;
     if (inside < kLeastInside || least > kMostDistanceFound * unit) return std::nullopt;
@@ -124,7 +127,11 @@ class DescribedImage {
       }
     }
     if (second == 0xFFFF || least > kRatioFound * second) return std::nullopt;
-    return Found{seen_px(best), point_[best]};
+    for (const SoughtPoint* point : place.points) {
+      compare({best, best + 1}, *point, candidates, &second);
+      if (second == least) return Found{seen_px(best), point};
+    }
+    return std::nullopt;
   }
 
  private:
@@ -159,18 +166,20 @@ class DescribedImage {
 
   // How far what is seen there is from the nearest of a place's points.
   void compare(const SoughtPlace& place, const Run& run, const Candidates& candidates) {
-    const std::size_t bytes = grid_.descriptor_bytes, count = run.end - run.first;
-    distances_.resize(std::max(distances_.size(), count));
-    std::fill_n(least_.begin() + run.first, count, std::uint16_t{0xFFFF});
-    for (const SoughtPoint* point : place.points) {
-      hamming_rows(candidates.best[point->signature].map->descriptors.data() + point->row * bytes,
-                   grid_.descriptors.data() + run.first * bytes, count, bytes, distances_.data());
-      for (std::uint32_t i = 0; i < count; ++i) {
-        if (distances_[i] >= least_[run.first + i]) continue;
-        least_[run.first + i] = distances_[i];
-        point_[run.first + i] = point;
-      }
+    std::uint16_t* const least = least_.data() + run.first;
+    const std::size_t count = run.end - run.first;
+    compare(run, *place.points.front(), candidates, least);
+    for (std::size_t p = 1; p < place.points.size(); ++p) {
+      distances_.resize(std::max(distances_.size(), count));
+      compare(run, *place.points[p], candidates, distances_.data());
+      for (std::size_t i = 0; i < count; ++i) least[i] = std::min(least[i], distances_[i]);
     }
+  }
+  void compare(const Run& run, const SoughtPoint& point, const Candidates& candidates,
+               std::uint16_t* out) const {
+    const std::size_t bytes = grid_.descriptor_bytes;
+    hamming_rows(candidates.best[point.signature].map->descriptors.data() + point.row * bytes,
+                 grid_.descriptors.data() + run.first * bytes, run.end - run.first, bytes, out);
   }
 
   float beside2_;
@@ -180,7 +189,6 @@ class DescribedImage {
   // Of the place that is looked for.
   std::vector<Run> runs_;
   std::vector<std::uint16_t> distances_, least_;
-  std::vector<const SoughtPoint*> point_;
 };
 
 }  // namespace

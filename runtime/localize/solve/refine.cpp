@@ -2,7 +2,9 @@
 #include "runtime/localize/solve/refine.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace zonepack::localize {
 namespace {
@@ -40,30 +42,69 @@ void add_plane(const Eigen::Isometry3d& T, const PlanePrior& prior, Normal& norm
   normal.add<2>(tilt, up_base.head<2>(), 1 / (prior.sigma_tilt_rad * prior.sigma_tilt_rad));
 }
 
+// What one axis of the image adds: it depends on five of the six unknowns.
+struct AxisSums {
+  std::array<double, 15> information{};  // the upper triangle, row by row
+  std::array<double, 5> gradient{};
+
+  void add(const std::array<double, 5>& J, double r, double weight) {
+    std::size_t k = 0;
+    for (std::size_t row = 0; row < 5; ++row) {
+      const double weighted = weight * J[row];
+      gradient[row] += weighted * r;
+      for (std::size_t column = row; column < 5; ++column) {
+        information[k++] += weighted * J[column];
+      }
+    }
+  }
+
+  // `unknowns`: the numbers of the five.
+  void add_to(Normal& normal, const std::array<int, 5>& unknowns) const {
+    std::size_t k = 0;
+    for (std::size_t row = 0; row < 5; ++row) {
+      normal.gradient(unknowns[row]) += gradient[row];
+      for (std::size_t column = row; column < 5; ++column, ++k) {
+        normal.information(unknowns[row], unknowns[column]) += information[k];
+        if (column == row) continue;
+        normal.information(unknowns[column], unknowns[row]) += information[k];
+      }
+    }
+  }
+};
+
+// Summed along the axes of the camera, where half of a projection's derivatives are zero, then
+// turned to those of the map and of the base. A shift d and a turn w of the base move a point of
+// the camera's frame by q x w - d, q being the way to it from the base's origin.
 void add_sightings(std::span<const Sighting> sightings, const CameraModel& camera,
                    const Eigen::Isometry3d& T, double scale_px, double sigma_px, Normal& normal) {
   const Eigen::Isometry3d T_camera_base = camera.T_base_camera.inverse();
-  const Eigen::Matrix3d R_base_map = T.linear().transpose();
   const Eigen::Matrix3d R_camera_base = T_camera_base.linear();
+  const Eigen::Matrix3d R_camera_map = R_camera_base * T.linear().transpose();
   const double scale2 = scale_px * scale_px;
+  AxisSums across, down;
   for (const Sighting& sighting : sightings) {
-    const Eigen::Vector3d p_base = R_base_map * (sighting.p_map - T.translation());
-    const Eigen::Vector3d p = R_camera_base * p_base + T_camera_base.translation();
+    const Eigen::Vector3d q = R_camera_map * (sighting.p_map - T.translation());
+    const Eigen::Vector3d p = q + T_camera_base.translation();
     if (p.z() < kLeastDepth) continue;
-    const Eigen::Vector2d r(camera.cx + camera.fx * p.x() / p.z() - sighting.px.x(),
-                            camera.cy + camera.fy * p.y() / p.z() - sighting.px.y());
+    const double x = p.x() / p.z(), y = p.y() / p.z();
+    const Eigen::Vector2d r(camera.cx + camera.fx * x - sighting.px.x(),
+                            camera.cy + camera.fy * y - sighting.px.y());
     const double e2 = r.squaredNorm();
     if (e2 > 16 * scale2) continue;
     const double root = scale2 / (scale2 + e2);  // Geman and McClure
-    Eigen::Matrix<double, 2, 3> px_by_camera;
-    px_by_camera << camera.fx / p.z(), 0, -camera.fx * p.x() / (p.z() * p.z()), 0,
-        camera.fy / p.z(), -camera.fy * p.y() / (p.z() * p.z());
-    const Eigen::Matrix<double, 2, 3> px_by_base = px_by_camera * R_camera_base;
-    Eigen::Matrix<double, 2, 6> J;
-    J.leftCols<3>() = -px_by_base * R_base_map;
-    J.rightCols<3>() = px_by_base * cross(p_base);
-    normal.add<2>(J, r, sighting.weight * root * root / (sigma_px * sigma_px));
+    const double weight = sighting.weight * root * root / (sigma_px * sigma_px);
+    const double fx = camera.fx / p.z(), fy = camera.fy / p.z();
+    across.add({-fx, fx * x, fx * x * q.y(), -fx * (q.z() + x * q.x()), fx * q.y()}, r.x(), weight);
+    down.add({-fy, fy * y, fy * (q.z() + y * q.y()), -fy * y * q.x(), -fy * q.x()}, r.y(), weight);
   }
+  Normal along_camera;
+  across.add_to(along_camera, {0, 2, 3, 4, 5});
+  down.add_to(along_camera, {1, 2, 3, 4, 5});
+  Matrix6 turned = Matrix6::Zero();
+  turned.topLeftCorner<3, 3>() = R_camera_map;
+  turned.bottomRightCorner<3, 3>() = R_camera_base;
+  normal.information += turned.transpose() * along_camera.information * turned;
+  normal.gradient += turned.transpose() * along_camera.gradient;
 }
 
 Eigen::Matrix3d turn_of(const Eigen::Vector3d& w) {
