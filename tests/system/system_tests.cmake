@@ -79,8 +79,6 @@ endif()
 if(TARGET zoned)
   add_test(NAME system/runtime_without_packer
            COMMAND ${CMAKE_CURRENT_LIST_DIR}/runtime_alone_test.sh ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR})
-  set_tests_properties(system/runtime_without_packer PROPERTIES
-                       ENVIRONMENT "CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}")
 endif()
 
 # Packs and manifests as others see them: builds that are killed, and files read without our code.
