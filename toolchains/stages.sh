@@ -152,8 +152,9 @@ EOT
 
 ctest_of() {  # PRESET WHAT [arguments of ctest]
   stage "tests: $2"
-  # The limit is for tests that name none: what a failed one left running may hold its output open for good.
-  ctest --preset "$1" -j "$(nproc)" --timeout 600 --output-on-failure "${@:3}" 2>&1 | counted "build/$1/ctest.log"
+  # One test more than processors, since a third of their time is waiting. The limit is for tests that name none: what a
+  # failed one left running may hold its output open for good.
+  ctest --preset "$1" -j "$(($(nproc) + 1))" --timeout 600 --output-on-failure "${@:3}" 2>&1 | counted "build/$1/ctest.log"
   skipped "$1"
 }
 
