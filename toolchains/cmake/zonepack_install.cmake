@@ -29,7 +29,7 @@ zonepack_install_headers(platform runtime)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/generated/runtime
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/zonepack COMPONENT dev FILES_MATCHING PATTERN "*_generated.h")
 if(ZONEPACK_BUILD_PACKER)
-  zonepack_install_libraries(zonepack-packer zonepack_version zonepack_command_line zonepack_packer)
+  zonepack_install_libraries(zonepack-packer zonepack_version zonepack_command_line zonepack_packer zonepack_packer_commands)
   zonepack_install_headers(packer)
 endif()
 file(WRITE ${PROJECT_BINARY_DIR}/client.hpp "// SPDX-License-Identifier: Apache-2.0
