@@ -20,7 +20,7 @@
 #include "packer/commands/verify.hpp"
 #include "packer/record/source_kind.hpp"
 #include "platform/command_line/command_line.hpp"
-#include "platform/signals.hpp"
+#include "platform/process/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/pack_format/file/pack_file.hpp"
 

@@ -10,10 +10,10 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
 #include "platform/base/file_kind.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/atomic_file.hpp"
+#include "platform/files/storage.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 
 namespace zonepack::packer {

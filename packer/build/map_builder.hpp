@@ -17,7 +17,7 @@
 #include "packer/zones/partition.hpp"
 #include "packer/zones/split.hpp"
 #include "packer/zones/zone_file.hpp"
-#include "platform/progress.hpp"
+#include "platform/process/progress.hpp"
 #include "runtime/pack_format/file/accounting.hpp"
 
 // Builds a map, a folder with one pack per zone and a manifest, from a database and a zone file.

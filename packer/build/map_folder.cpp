@@ -6,9 +6,9 @@
 #include <system_error>
 
 #include "packer/build/leftovers.hpp"
-#include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/atomic_file.hpp"
+#include "platform/files/storage.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 
 namespace zonepack::packer {

@@ -16,9 +16,9 @@
 #include "packer/console/output_path.hpp"
 #include "packer/export/nvblox_export.hpp"
 #include "packer/export/zone_export.hpp"
-#include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
 #include "platform/command_line/command_line.hpp"
+#include "platform/files/atomic_file.hpp"
 
 namespace zonepack::packer {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "packer/console/output_path.hpp"
 #include "packer/console/words.hpp"
-#include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
+#include "platform/files/atomic_file.hpp"
 
 namespace zonepack::packer {
 namespace {

@@ -16,9 +16,9 @@
 #include "packer/outline/map_drawing.hpp"
 #include "packer/outline/paths.hpp"
 #include "packer/sources/open_source.hpp"
-#include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
 #include "platform/command_line/command_line.hpp"
+#include "platform/files/atomic_file.hpp"
 
 namespace zonepack::packer {
 namespace {

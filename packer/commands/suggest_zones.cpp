@@ -26,10 +26,10 @@
 #include "packer/suggest/suggest.hpp"
 #include "packer/zones/orphans.hpp"
 #include "packer/zones/zone_text.hpp"
-#include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
 #include "platform/base/shell_word.hpp"
 #include "platform/command_line/command_line.hpp"
+#include "platform/files/atomic_file.hpp"
 #include "runtime/report/format.hpp"
 #include "runtime/report/report.hpp"
 

@@ -28,11 +28,11 @@
 #include "packer/update/held_plan.hpp"
 #include "packer/zones/zone_file.hpp"
 #include "packer/zones/zone_text.hpp"
-#include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
 #include "platform/base/shell_word.hpp"
 #include "platform/command_line/command_line.hpp"
-#include "platform/progress.hpp"
+#include "platform/files/atomic_file.hpp"
+#include "platform/process/progress.hpp"
 #include "runtime/report/format.hpp"
 #include "runtime/report/report.hpp"
 

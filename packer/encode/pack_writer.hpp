@@ -10,7 +10,7 @@
 
 #include "packer/encode/bulk_chunk_builder.hpp"
 #include "packer/encode/core_chunk_builder.hpp"
-#include "platform/atomic_file.hpp"
+#include "platform/files/atomic_file.hpp"
 #include "runtime/pack_format/file/pack_file.hpp"
 
 namespace zonepack::packer {

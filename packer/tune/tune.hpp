@@ -9,7 +9,7 @@
 #include "packer/tune/changes.hpp"
 #include "packer/tune/layout.hpp"
 #include "packer/tune/track.hpp"
-#include "platform/progress.hpp"
+#include "platform/process/progress.hpp"
 
 // Zones that fit how robots drive, found change by change.
 //

@@ -15,7 +15,7 @@
 #include "packer/zones/orphans.hpp"
 #include "packer/zones/partition.hpp"
 #include "platform/base/byte_count.hpp"
-#include "platform/progress.hpp"
+#include "platform/process/progress.hpp"
 
 // Makes the next version of a map in its folder, of which most zones stay as they are.
 namespace zonepack::packer {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
 
 namespace zonepack::packer {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "packer/verify/manifest_checks.hpp"
 #include "packer/verify/pack_verifier.hpp"
-#include "platform/atomic_file.hpp"
 #include "platform/base/failure.hpp"
+#include "platform/files/atomic_file.hpp"
 #include "runtime/pack_format/limits.hpp"
 
 namespace zonepack::packer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/account.hpp"
+#include "platform/memory/account.hpp"
 
 #include <grp.h>
 #include <unistd.h>

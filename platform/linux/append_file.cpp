@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/append_file.hpp"
+#include "platform/files/append_file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/atomic_file.hpp"
+#include "platform/files/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -11,8 +11,8 @@
 #include <system_error>
 #include <utility>
 
+#include "platform/files/output_place.hpp"
 #include "platform/linux/last_error.hpp"
-#include "platform/output_place.hpp"
 
 namespace zonepack {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/board.hpp"
+#include "platform/devices/board.hpp"
 
 #include <sys/resource.h>
 #include <sys/utsname.h>

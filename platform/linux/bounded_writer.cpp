@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/bounded_writer.hpp"
+#include "platform/files/bounded_writer.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -7,8 +7,8 @@
 
 #include <cerrno>
 
-#include "platform/clock.hpp"
 #include "platform/linux/last_error.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

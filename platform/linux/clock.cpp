@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 
 #include <cerrno>
 #include <ctime>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/descriptor.hpp"
+#include "platform/files/descriptor.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/file_lock.hpp"
+#include "platform/files/file_lock.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>

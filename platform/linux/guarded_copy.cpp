@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/guarded_copy.hpp"
+#include "platform/memory/guarded_copy.hpp"
 
 #include <setjmp.h>
 #include <signal.h>

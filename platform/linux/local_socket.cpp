@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/local_socket.hpp"
+#include "platform/process/local_socket.hpp"
 
 #include <poll.h>
 #include <sys/socket.h>

@@ -9,7 +9,7 @@
 #include <cerrno>
 
 #include "platform/base/byte_count.hpp"
-#include "platform/guarded_copy.hpp"
+#include "platform/memory/guarded_copy.hpp"
 
 namespace zonepack {
 namespace {

@@ -11,7 +11,7 @@
 #include <ctime>
 #include <memory>
 
-#include "platform/realtime.hpp"
+#include "platform/process/realtime.hpp"
 
 namespace zonepack {
 namespace {

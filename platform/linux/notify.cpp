@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/notify.hpp"
+#include "platform/process/notify.hpp"
 
 #include <fcntl.h>
 #include <sys/socket.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/output_place.hpp"
+#include "platform/files/output_place.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -7,8 +7,8 @@
 
 #include <cerrno>
 
-#include "platform/clock.hpp"
 #include "platform/linux/last_error.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

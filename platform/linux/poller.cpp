@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/poller.hpp"
+#include "platform/process/poller.hpp"
 
 #include <sys/epoll.h>
 #include <sys/eventfd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/presence.hpp"
+#include "platform/process/presence.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/read_queue.hpp"
+#include "platform/files/read_queue.hpp"
 
 #include <linux/aio_abi.h>
 #include <sys/mman.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/read_stream.hpp"
+#include "platform/files/read_stream.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/realtime.hpp"
+#include "platform/process/realtime.hpp"
 
 #include <malloc.h>
 #include <pthread.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/run_program.hpp"
+#include "platform/process/run_program.hpp"
 
 #include <spawn.h>
 #include <sys/wait.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/shared_memory.hpp"
+#include "platform/memory/shared_memory.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>

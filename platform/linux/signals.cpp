@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/signals.hpp"
+#include "platform/process/signals.hpp"
 
 #include <pthread.h>
 #include <signal.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <ctime>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

@@ -8,13 +8,13 @@
 #include <filesystem>
 #include <string>
 
-#include "platform/can_errors.hpp"
-#include "platform/clock.hpp"
-#include "platform/descriptor.hpp"
+#include "platform/can/can_errors.hpp"
+#include "platform/can/socketcan.hpp"
+#include "platform/files/descriptor.hpp"
 #include "platform/linux/socketcan_keeper.hpp"
 #include "platform/linux/socketcan_message.hpp"
-#include "platform/socketcan.hpp"
-#include "platform/stamp_converter.hpp"
+#include "platform/process/clock.hpp"
+#include "platform/process/stamp_converter.hpp"
 
 namespace zonepack {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cerrno>
 
-#include "platform/clock.hpp"
 #include "platform/linux/socketcan_socket.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

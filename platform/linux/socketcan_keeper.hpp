@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "platform/base/result.hpp"
-#include "platform/can_bus.hpp"
-#include "platform/realtime.hpp"
-#include "platform/socketcan.hpp"
-#include "platform/wakeup.hpp"
+#include "platform/can/can_bus.hpp"
+#include "platform/can/socketcan.hpp"
+#include "platform/process/realtime.hpp"
+#include "platform/process/wakeup.hpp"
 
 namespace zonepack {
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "platform/can_errors.hpp"
+#include "platform/can/can_errors.hpp"
 
 namespace zonepack {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "platform/can_bus.hpp"
+#include "platform/can/can_bus.hpp"
 
 // Decodes what a raw CAN socket delivers, without a socket.
 //

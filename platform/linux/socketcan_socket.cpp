@@ -14,7 +14,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "platform/can_errors.hpp"
+#include "platform/can/can_errors.hpp"
 
 namespace zonepack {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "platform/base/result.hpp"
-#include "platform/can_bus.hpp"
-#include "platform/descriptor.hpp"
-#include "platform/socketcan.hpp"
+#include "platform/can/can_bus.hpp"
+#include "platform/can/socketcan.hpp"
+#include "platform/files/descriptor.hpp"
 
 namespace zonepack {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "platform/base/require.hpp"
-#include "platform/descriptor.hpp"
+#include "platform/files/descriptor.hpp"
+#include "platform/files/storage_probe.hpp"
 #include "platform/linux/mapped_copy.hpp"
-#include "platform/storage_probe.hpp"
 
 namespace zonepack {
 namespace {

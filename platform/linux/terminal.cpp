@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/terminal.hpp"
+#include "platform/process/terminal.hpp"
 
 #include <poll.h>
 #include <signal.h>

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "platform/base/failure.hpp"
-#include "platform/video_device.hpp"
+#include "platform/devices/video_device.hpp"
 
 namespace zonepack {
 

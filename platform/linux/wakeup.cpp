@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/wakeup.hpp"
+#include "platform/process/wakeup.hpp"
 
 #include <semaphore.h>
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "platform/can_errors.hpp"
+#include "platform/can/can_errors.hpp"
 
 namespace zonepack {
 

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "platform/can_bus.hpp"
-#include "platform/can_frame_source.hpp"
+#include "platform/can/can_bus.hpp"
+#include "platform/can/can_frame_source.hpp"
 
 namespace zonepack {
 

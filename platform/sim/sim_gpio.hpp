@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "platform/edge_filter.hpp"
-#include "platform/gpio_line.hpp"
+#include "platform/devices/edge_filter.hpp"
+#include "platform/devices/gpio_line.hpp"
 
 namespace zonepack {
 

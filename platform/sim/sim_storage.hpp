@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/storage_probe.hpp"
+#include "platform/files/storage_probe.hpp"
 
 namespace zonepack {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "platform/can_errors.hpp"
+#include "platform/can/can_errors.hpp"
 
 namespace zonepack {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <iostream>
 
-#include "platform/atomic_file.hpp"
 #include "platform/base/number_text.hpp"
-#include "platform/can_log.hpp"
+#include "platform/can/can_log.hpp"
+#include "platform/files/atomic_file.hpp"
 #include "runtime/calibrate/wheel_hints.hpp"
 #include "runtime/calibrate/wheel_watch.hpp"
 #include "runtime/odometry/det_math.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "platform/base/result.hpp"
-#include "platform/shared_memory.hpp"
+#include "platform/memory/shared_memory.hpp"
 #include "runtime/client/shared_reader.hpp"
 #include "runtime/protocol/connection.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "platform/base/require.hpp"
-#include "platform/can_errors.hpp"
+#include "platform/can/can_errors.hpp"
 #include "runtime/odometry/se2.hpp"
 #include "runtime/zones/zones_in_view.hpp"
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "platform/can_bus.hpp"
+#include "platform/can/can_bus.hpp"
 #include "runtime/control/command.hpp"
 #include "runtime/control/event.hpp"
 #include "runtime/control/line_edge.hpp"

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "platform/command_line/command_line.hpp"
-#include "platform/signals.hpp"
+#include "platform/process/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/ctl/commands/commands.hpp"
 #include "runtime/protocol/messages.hpp"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "platform/base/failure.hpp"
-#include "platform/can_bus.hpp"
-#include "platform/can_log.hpp"
+#include "platform/can/can_bus.hpp"
+#include "platform/can/can_log.hpp"
 #include "runtime/control/command.hpp"
 #include "runtime/control/line_edge.hpp"
 #include "runtime/map/catalog.hpp"

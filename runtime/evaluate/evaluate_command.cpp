@@ -11,8 +11,8 @@
 
 #include "platform/base/counted.hpp"
 #include "platform/base/nearest_word.hpp"
-#include "platform/progress.hpp"
-#include "platform/write_output.hpp"
+#include "platform/files/write_output.hpp"
+#include "platform/process/progress.hpp"
 #include "runtime/evaluate/choices.hpp"
 #include "runtime/evaluate/evaluate_json.hpp"
 #include "runtime/evaluate/evaluate_report.hpp"

@@ -8,11 +8,11 @@
 #include <sstream>
 #include <utility>
 
-#include "platform/atomic_file.hpp"
 #include "platform/base/counted.hpp"
 #include "platform/base/json_text.hpp"
 #include "platform/base/number_text.hpp"
-#include "platform/write_output.hpp"
+#include "platform/files/atomic_file.hpp"
+#include "platform/files/write_output.hpp"
 #include "runtime/learn/prediction_score.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/pack_format/file/transitions_bytes.hpp"

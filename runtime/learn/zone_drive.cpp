@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "platform/can_log.hpp"
+#include "platform/can/can_log.hpp"
 #include "runtime/pack_format/file/zone_name.hpp"
 #include "runtime/recording/block.hpp"
 #include "runtime/replay/recorded_run.hpp"

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <utility>
 
-#include "platform/clock.hpp"
+#include "platform/can/socketcan.hpp"
+#include "platform/process/clock.hpp"
 #include "platform/sim/sim_can_bus.hpp"
-#include "platform/socketcan.hpp"
 #include "runtime/live/bus_messages.hpp"
 #include "runtime/live/script_source.hpp"
 

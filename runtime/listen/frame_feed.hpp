@@ -7,8 +7,8 @@
 #include <string>
 
 #include "platform/base/failure.hpp"
-#include "platform/can_frame_source.hpp"
-#include "platform/can_log.hpp"
+#include "platform/can/can_frame_source.hpp"
+#include "platform/can/can_log.hpp"
 #include "runtime/live/can_source.hpp"
 #include "runtime/settings/settings.hpp"
 

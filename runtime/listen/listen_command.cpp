@@ -6,9 +6,9 @@
 #include <memory>
 #include <utility>
 
-#include "platform/atomic_file.hpp"
-#include "platform/clock.hpp"
-#include "platform/terminal.hpp"
+#include "platform/files/atomic_file.hpp"
+#include "platform/process/clock.hpp"
+#include "platform/process/terminal.hpp"
 #include "runtime/listen/listen_text.hpp"
 #include "runtime/listen/listener.hpp"
 #include "runtime/run/log_faults.hpp"

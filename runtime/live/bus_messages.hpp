@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "platform/can_bus.hpp"
+#include "platform/can/can_bus.hpp"
 
 namespace zonepack {
 

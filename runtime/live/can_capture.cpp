@@ -5,9 +5,9 @@
 #include <cerrno>
 #include <string_view>
 
-#include "platform/can_log_line.hpp"
-#include "platform/clock.hpp"
-#include "platform/output_place.hpp"
+#include "platform/can/can_log_line.hpp"
+#include "platform/files/output_place.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

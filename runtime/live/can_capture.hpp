@@ -7,8 +7,8 @@
 #include <string>
 
 #include "platform/base/result.hpp"
-#include "platform/can_bus.hpp"
-#include "platform/spsc_queue.hpp"
+#include "platform/can/can_bus.hpp"
+#include "platform/memory/spsc_queue.hpp"
 
 namespace zonepack {
 

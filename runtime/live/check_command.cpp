@@ -6,13 +6,13 @@
 #include <iostream>
 #include <vector>
 
-#include "platform/account.hpp"
 #include "platform/base/counted.hpp"
 #include "platform/base/failure.hpp"
-#include "platform/board.hpp"
-#include "platform/output_place.hpp"
-#include "platform/realtime.hpp"
-#include "platform/shared_memory.hpp"
+#include "platform/devices/board.hpp"
+#include "platform/files/output_place.hpp"
+#include "platform/memory/account.hpp"
+#include "platform/memory/shared_memory.hpp"
+#include "platform/process/realtime.hpp"
 #include "runtime/live/line_requests.hpp"
 #include "runtime/live/live_source.hpp"
 #include "runtime/map/load_fault.hpp"

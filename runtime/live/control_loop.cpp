@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "platform/allocation_watch.hpp"
 #include "platform/base/require.hpp"
-#include "platform/clock.hpp"
+#include "platform/memory/allocation_watch.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

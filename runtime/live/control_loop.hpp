@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "platform/can_bus.hpp"
-#include "platform/realtime.hpp"
-#include "platform/seqlock.hpp"
-#include "platform/spsc_queue.hpp"
+#include "platform/can/can_bus.hpp"
+#include "platform/memory/seqlock.hpp"
+#include "platform/memory/spsc_queue.hpp"
+#include "platform/process/realtime.hpp"
 #include "runtime/control/input_sink.hpp"
 #include "runtime/control/map_switcher.hpp"
 #include "runtime/live/live_notes.hpp"

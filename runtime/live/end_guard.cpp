@@ -8,8 +8,8 @@
 #include <system_error>
 
 #include "platform/base/last_act.hpp"
-#include "platform/clock.hpp"
-#include "platform/signals.hpp"
+#include "platform/process/clock.hpp"
+#include "platform/process/signals.hpp"
 
 namespace zonepack {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/realtime.hpp"
+#include "platform/process/realtime.hpp"
 
 namespace zonepack {
 

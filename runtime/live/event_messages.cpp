@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "platform/base/counted.hpp"
-#include "platform/clock.hpp"
-#include "platform/descriptor.hpp"
+#include "platform/files/descriptor.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/live/print_line.hpp"
 
 namespace zonepack {

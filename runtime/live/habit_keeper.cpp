@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "platform/atomic_file.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/atomic_file.hpp"
+#include "platform/files/storage.hpp"
 #include "runtime/run/run_inputs.hpp"
 
 namespace zonepack {

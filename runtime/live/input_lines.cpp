@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "platform/base/require.hpp"
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/live/line_opening.hpp"
 
 namespace zonepack {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/gpio_line.hpp"
+#include "platform/devices/gpio_line.hpp"
 #include "runtime/settings/gpio_settings.hpp"
 
 namespace zonepack {

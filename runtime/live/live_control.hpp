@@ -6,8 +6,8 @@
 #include <string>
 
 #include "platform/base/failure.hpp"
-#include "platform/realtime.hpp"
-#include "platform/seqlock.hpp"
+#include "platform/memory/seqlock.hpp"
+#include "platform/process/realtime.hpp"
 #include "runtime/live/control_loop.hpp"
 #include "runtime/live/live_loader.hpp"
 #include "runtime/run/run_summary.hpp"

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "platform/base/failure.hpp"
-#include "platform/gpio_line.hpp"
+#include "platform/devices/gpio_line.hpp"
 #include "runtime/live/input_lines.hpp"
 #include "runtime/live/output_lines.hpp"
 #include "runtime/run/line_board.hpp"

@@ -2,7 +2,7 @@
 #include "runtime/live/live_loader.hpp"
 
 #include "platform/base/require.hpp"
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/map/run_load.hpp"
 
 namespace zonepack {

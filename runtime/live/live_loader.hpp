@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "platform/realtime.hpp"
-#include "platform/seqlock.hpp"
-#include "platform/spsc_queue.hpp"
-#include "platform/wakeup.hpp"
+#include "platform/memory/seqlock.hpp"
+#include "platform/memory/spsc_queue.hpp"
+#include "platform/process/realtime.hpp"
+#include "platform/process/wakeup.hpp"
 #include "runtime/control/zone_loader.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/map/loader.hpp"

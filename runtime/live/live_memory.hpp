@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "platform/base/failure.hpp"
-#include "platform/notify.hpp"
-#include "platform/shared_memory.hpp"
+#include "platform/memory/shared_memory.hpp"
+#include "platform/process/notify.hpp"
 #include "runtime/memory/arena_memory.hpp"
 #include "runtime/memory/shared_map.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <variant>
 
-#include "platform/spsc_queue.hpp"
+#include "platform/memory/spsc_queue.hpp"
 #include "runtime/control/event.hpp"
 #include "runtime/run/live_status.hpp"
 #include "runtime/run/run_statistics.hpp"

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/live/print_line.hpp"
 
 namespace zonepack {

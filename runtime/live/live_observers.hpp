@@ -7,8 +7,8 @@
 #include <string>
 
 #include "platform/base/failure.hpp"
-#include "platform/notify.hpp"
-#include "platform/spsc_queue.hpp"
+#include "platform/memory/spsc_queue.hpp"
+#include "platform/process/notify.hpp"
 #include "runtime/live/event_messages.hpp"
 #include "runtime/live/habit_keeper.hpp"
 #include "runtime/live/live_control.hpp"

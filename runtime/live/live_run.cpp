@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "platform/base/require.hpp"
-#include "platform/clock.hpp"
-#include "platform/signals.hpp"
+#include "platform/process/clock.hpp"
+#include "platform/process/signals.hpp"
 #include "runtime/live/bus_messages.hpp"
 #include "runtime/live/print_line.hpp"
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "platform/base/failure.hpp"
-#include "platform/can_log.hpp"
-#include "platform/notify.hpp"
+#include "platform/can/can_log.hpp"
+#include "platform/process/notify.hpp"
 #include "runtime/live/can_source.hpp"
 #include "runtime/live/end_guard.hpp"
 #include "runtime/live/live_control.hpp"
@@ -42,7 +42,7 @@ struct LiveOptions {
 //                 └──► observers             event log, recordings, saved state, service; GPIO
 //                 lines
 //
-// Threads: all calls by the main thread, whose signals must be held (platform/signals.hpp).
+// Threads: all calls by the main thread, whose signals must be held (platform/process/signals.hpp).
 class LiveRun {
  public:
   // All but map and options must outlive this object. The map goes when another replaces it.

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "platform/clock.hpp"
-#include "platform/socketcan.hpp"
+#include "platform/can/socketcan.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/live/log_feed.hpp"
 #include "runtime/live/robot_clock.hpp"
 #include "runtime/live/script_source.hpp"

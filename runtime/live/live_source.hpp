@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "platform/base/failure.hpp"
-#include "platform/can_bus.hpp"
-#include "platform/can_log.hpp"
+#include "platform/can/can_bus.hpp"
+#include "platform/can/can_log.hpp"
 #include "runtime/live/can_source.hpp"
 #include "runtime/live/control_loop.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"

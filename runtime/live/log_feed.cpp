@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "platform/can_log.hpp"
-#include "platform/realtime.hpp"
+#include "platform/can/can_log.hpp"
+#include "platform/memory/spsc_queue.hpp"
+#include "platform/process/realtime.hpp"
 #include "platform/sim/sim_can_bus.hpp"
-#include "platform/spsc_queue.hpp"
 #include "runtime/live/control_loop.hpp"
 #include "runtime/odometry/pose_filter.hpp"
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "platform/realtime.hpp"
-#include "platform/spsc_queue.hpp"
+#include "platform/memory/spsc_queue.hpp"
+#include "platform/process/realtime.hpp"
 #include "runtime/live/live_notes.hpp"
 #include "runtime/run/run.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "platform/realtime.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
+#include "platform/process/realtime.hpp"
 #include "runtime/live/print_line.hpp"
 #include "runtime/map/next_version.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "platform/slow_job.hpp"
+#include "platform/process/slow_job.hpp"
 #include "runtime/live/control_loop.hpp"
 #include "runtime/live/run_recording.hpp"
 #include "runtime/live/service.hpp"

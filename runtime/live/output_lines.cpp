@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/live/line_opening.hpp"
 
 namespace zonepack {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "platform/base/failure.hpp"
-#include "platform/gpio_line.hpp"
-#include "platform/realtime.hpp"
+#include "platform/devices/gpio_line.hpp"
+#include "platform/process/realtime.hpp"
 #include "runtime/live/line_requests.hpp"
 #include "runtime/run/histogram.hpp"
 #include "runtime/run/line_board.hpp"

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/live/control_loop.hpp"
 
 namespace zonepack {

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "platform/base/counted.hpp"
-#include "platform/clock.hpp"
-#include "platform/realtime.hpp"
-#include "platform/signals.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
+#include "platform/process/clock.hpp"
+#include "platform/process/realtime.hpp"
+#include "platform/process/signals.hpp"
 #include "runtime/live/habit_keeper.hpp"
 #include "runtime/live/live_memory.hpp"
 #include "runtime/live/live_run.hpp"

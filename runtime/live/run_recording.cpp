@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/live/run_recording.hpp"
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

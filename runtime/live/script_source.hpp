@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "platform/base/failure.hpp"
-#include "platform/can_log.hpp"
+#include "platform/can/can_log.hpp"
 #include "platform/sim/sim_wire.hpp"
 #include "runtime/live/can_script.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"

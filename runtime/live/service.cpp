@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

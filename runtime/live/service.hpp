@@ -8,9 +8,9 @@
 #include <span>
 #include <string>
 
-#include "platform/notify.hpp"
-#include "platform/realtime.hpp"
-#include "platform/spsc_queue.hpp"
+#include "platform/memory/spsc_queue.hpp"
+#include "platform/process/notify.hpp"
+#include "platform/process/realtime.hpp"
 #include "runtime/live/live_memory.hpp"
 #include "runtime/run/map_version.hpp"
 #include "runtime/serve/server.hpp"

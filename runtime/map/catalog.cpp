@@ -6,7 +6,7 @@
 #include <set>
 
 #include "platform/base/nearest_word.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
 
 namespace zonepack {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "platform/base/failure.hpp"
 #include "platform/base/result.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
 #include "runtime/pack_format/file/accounting.hpp"
 #include "runtime/pack_format/file/checksum.hpp"
 #include "runtime/pack_format/file/geometry.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "platform/base/failure.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
 #include "runtime/map/catalog.hpp"
 
 namespace zonepack {

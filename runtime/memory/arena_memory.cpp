@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 
-#include "platform/file_kind.hpp"
+#include "platform/files/file_kind.hpp"
 
 namespace zonepack {
 namespace {

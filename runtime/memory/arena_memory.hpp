@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "platform/base/failure.hpp"
-#include "platform/file_lock.hpp"
-#include "platform/notify.hpp"
-#include "platform/presence.hpp"
-#include "platform/shared_memory.hpp"
+#include "platform/files/file_lock.hpp"
+#include "platform/memory/shared_memory.hpp"
+#include "platform/process/notify.hpp"
+#include "platform/process/presence.hpp"
 
 namespace zonepack {
 

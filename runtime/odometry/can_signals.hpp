@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "platform/can_bus.hpp"
+#include "platform/can/can_bus.hpp"
 
 // Numbers out of CAN frames, as a DBC file describes them, without its text.
 // Real-time: no allocation; a value takes at most 9 bytes, one after the other, and so does each of

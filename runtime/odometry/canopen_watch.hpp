@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "platform/can_bus.hpp"
+#include "platform/can/can_bus.hpp"
 
 namespace zonepack {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "platform/can_bus.hpp"
+#include "platform/can/can_bus.hpp"
 #include "runtime/odometry/can_signals.hpp"
 #include "runtime/odometry/canopen_watch.hpp"
 #include "runtime/odometry/se2.hpp"

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <utility>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/local_socket.hpp"
+#include "platform/process/local_socket.hpp"
 #include "runtime/protocol/messages.hpp"
 
 namespace zonepack {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "platform/atomic_file.hpp"
+#include "platform/files/atomic_file.hpp"
 #include "runtime/recording/block.hpp"
 #include "runtime/recording/flight_names.hpp"
 #include "runtime/recording/recording_end.hpp"

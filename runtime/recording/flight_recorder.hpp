@@ -8,10 +8,10 @@
 #include <optional>
 #include <string>
 
-#include "platform/append_file.hpp"
 #include "platform/base/byte_count.hpp"
 #include "platform/base/result.hpp"
-#include "platform/bounded_writer.hpp"
+#include "platform/files/append_file.hpp"
+#include "platform/files/bounded_writer.hpp"
 #include "runtime/recording/bytes.hpp"
 #include "runtime/recording/checkpoint.hpp"
 #include "runtime/recording/preface.hpp"

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "platform/append_file.hpp"
 #include "platform/base/result.hpp"
+#include "platform/files/append_file.hpp"
 #include "runtime/recording/bytes.hpp"
 #include "runtime/recording/preface.hpp"
 #include "runtime/recording/recording_end.hpp"

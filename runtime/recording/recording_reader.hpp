@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "platform/base/failure.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
 #include "runtime/recording/checkpoint.hpp"
 #include "runtime/recording/cycle_block.hpp"
 #include "runtime/recording/map_block.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "platform/base/failure.hpp"
-#include "platform/can_frame_source.hpp"
+#include "platform/can/can_frame_source.hpp"
 #include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/replay/fix_source.hpp"

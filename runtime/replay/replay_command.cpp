@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "platform/can_log.hpp"
+#include "platform/can/can_log.hpp"
 #include "runtime/replay/recorded_run.hpp"
 #include "runtime/replay/replay.hpp"
 #include "runtime/run/baseline.hpp"

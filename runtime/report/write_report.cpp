@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "platform/atomic_file.hpp"
-#include "platform/run_program.hpp"
+#include "platform/files/atomic_file.hpp"
+#include "platform/process/run_program.hpp"
 #include "runtime/report/report.hpp"
 
 namespace zonepack::report {

@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "platform/atomic_file.hpp"
 #include "platform/base/result.hpp"
+#include "platform/files/atomic_file.hpp"
 #include "runtime/control/event.hpp"
 
 namespace zonepack {

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "platform/seqlock.hpp"
+#include "platform/memory/seqlock.hpp"
 #include "runtime/run/live_status.hpp"
 
 namespace zonepack {

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "platform/base/byte_count.hpp"
-#include "platform/can_bus.hpp"
+#include "platform/can/can_bus.hpp"
 #include "runtime/control/cycle.hpp"
 #include "runtime/memory/residency.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "platform/can_log.hpp"
+#include "platform/can/can_log.hpp"
 
 namespace zonepack {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "platform/base/failure.hpp"
-#include "platform/can_frame_source.hpp"
-#include "platform/can_log.hpp"
+#include "platform/can/can_frame_source.hpp"
+#include "platform/can/can_log.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
 
 namespace zonepack {

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "platform/can_log.hpp"
+#include "platform/can/can_log.hpp"
 
 namespace zonepack {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "platform/base/failure.hpp"
-#include "platform/output_place.hpp"
+#include "platform/files/output_place.hpp"
 
 namespace zonepack {
 

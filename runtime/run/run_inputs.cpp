@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "platform/base/shell_word.hpp"
-#include "platform/board.hpp"
-#include "platform/storage.hpp"
+#include "platform/devices/board.hpp"
+#include "platform/files/storage.hpp"
 #include "runtime/odometry/det_math.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 

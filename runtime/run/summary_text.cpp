@@ -5,10 +5,10 @@
 #include <string_view>
 #include <type_traits>
 
-#include "platform/atomic_file.hpp"
 #include "platform/base/counted.hpp"
 #include "platform/base/json_text.hpp"
 #include "platform/base/number_text.hpp"
+#include "platform/files/atomic_file.hpp"
 
 namespace zonepack {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "platform/spsc_queue.hpp"
+#include "platform/memory/spsc_queue.hpp"
 #include "runtime/control/command.hpp"
 #include "runtime/serve/zone_table.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "platform/base/byte_count.hpp"
 #include "platform/base/result.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/pack_format/file/geometry.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"

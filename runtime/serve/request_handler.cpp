@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "platform/base/failure.hpp"
-#include "platform/bounded_writer.hpp"
-#include "platform/clock.hpp"
+#include "platform/files/bounded_writer.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/serve/external_pose.hpp"
 
 namespace zonepack {

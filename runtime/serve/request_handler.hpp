@@ -4,8 +4,8 @@
 #include <atomic>
 #include <cstdint>
 
-#include "platform/local_socket.hpp"
-#include "platform/slow_job.hpp"
+#include "platform/process/local_socket.hpp"
+#include "platform/process/slow_job.hpp"
 #include "runtime/serve/answers.hpp"
 #include "runtime/serve/command_router.hpp"
 #include "runtime/serve/localizer_board.hpp"

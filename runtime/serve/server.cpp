@@ -7,8 +7,8 @@
 #include <cstring>
 #include <utility>
 
-#include "platform/account.hpp"
-#include "platform/clock.hpp"
+#include "platform/memory/account.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "platform/base/failure.hpp"
-#include "platform/local_socket.hpp"
-#include "platform/poller.hpp"
+#include "platform/process/local_socket.hpp"
+#include "platform/process/poller.hpp"
 #include "runtime/serve/answers.hpp"
 #include "runtime/serve/request_handler.hpp"
 #include "runtime/serve/served_map.hpp"

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "platform/base/result.hpp"
-#include "platform/bounded_writer.hpp"
-#include "platform/seqlock.hpp"
-#include "platform/spsc_queue.hpp"
+#include "platform/files/bounded_writer.hpp"
+#include "platform/memory/seqlock.hpp"
+#include "platform/memory/spsc_queue.hpp"
 #include "runtime/control/command.hpp"
 #include "runtime/control/event.hpp"
 #include "runtime/odometry/pose_filter.hpp"

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "platform/local_socket.hpp"
-#include "platform/poller.hpp"
+#include "platform/process/local_socket.hpp"
+#include "platform/process/poller.hpp"
 
 namespace zonepack {
 

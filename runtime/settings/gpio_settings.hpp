@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/gpio_line.hpp"
+#include "platform/devices/gpio_line.hpp"
 
 namespace zonepack {
 

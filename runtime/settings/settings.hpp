@@ -9,7 +9,7 @@
 
 #include "platform/base/byte_count.hpp"
 #include "platform/base/failure.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
 #include "runtime/control/eviction_rule.hpp"
 #include "runtime/odometry/can_signals.hpp"
 #include "runtime/odometry/pose_filter.hpp"

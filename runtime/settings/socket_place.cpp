@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "platform/account.hpp"
+#include "platform/memory/account.hpp"
 
 namespace zonepack {
 namespace {

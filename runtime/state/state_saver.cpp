@@ -7,7 +7,7 @@
 #include <cstring>
 #include <utility>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/odometry/se2.hpp"
 
 namespace zonepack {

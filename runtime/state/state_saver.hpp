@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "platform/realtime.hpp"
+#include "platform/process/realtime.hpp"
 #include "runtime/control/cycle.hpp"
 #include "runtime/state/state_store.hpp"
 

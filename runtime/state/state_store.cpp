@@ -4,9 +4,9 @@
 #include <cerrno>
 #include <filesystem>
 
-#include "platform/atomic_file.hpp"
-#include "platform/file_kind.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/atomic_file.hpp"
+#include "platform/files/file_kind.hpp"
+#include "platform/files/storage.hpp"
 
 namespace zonepack {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The heap of glibc, with a note to AllocationWatch in front. Empty under sanitizers, which bring a
 // heap of their own.
-#include "platform/foreign_heap.hpp"
+#include "platform/memory/foreign_heap.hpp"
 
 #ifndef ZONEPACK_FOREIGN_HEAP
 
 #include <cerrno>
 #include <cstddef>
 
-#include "platform/allocation_watch.hpp"
+#include "platform/memory/allocation_watch.hpp"
 
 using zonepack::allocation_watch::note;
 

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "platform/command_line/command_line.hpp"
-#include "platform/signals.hpp"
+#include "platform/process/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/calibrate/calibrate_command.hpp"
 #include "runtime/listen/listen_command.hpp"

@@ -23,10 +23,10 @@
 #include <string>
 #include <vector>
 
-#include "platform/clock.hpp"
-#include "platform/descriptor.hpp"
+#include "platform/can/socketcan.hpp"
+#include "platform/files/descriptor.hpp"
+#include "platform/process/clock.hpp"
 #include "platform/sim/sim_can_bus.hpp"
-#include "platform/socketcan.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
 
 namespace zonepack {

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/memory/residency.hpp"
 #include "runtime/memory/slot_pool.hpp"
 

@@ -27,8 +27,8 @@
 #include <tuple>
 #include <vector>
 
-#include "platform/can_log.hpp"
-#include "platform/clock.hpp"
+#include "platform/can/can_log.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/localize/camera/calibration.hpp"
 #include "runtime/localize/camera/image_file.hpp"
 #include "runtime/localize/camera/image_list.hpp"

@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/client/signature_view.hpp"
 #include "runtime/localize/camera/calibration.hpp"
 #include "runtime/localize/camera/image_file.hpp"

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "platform/shared_memory.hpp"
-#include "platform/spsc_queue.hpp"
+#include "platform/memory/shared_memory.hpp"
+#include "platform/memory/spsc_queue.hpp"
 #include "runtime/memory/shared_map.hpp"
 #include "runtime/replay/recorded_loader.hpp"
 #include "runtime/replay/recorded_run.hpp"

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/client/client.hpp"
 
 extern char** environ;

@@ -20,8 +20,8 @@
 #include <string>
 #include <vector>
 
-#include "platform/clock.hpp"
-#include "platform/shared_memory.hpp"
+#include "platform/memory/shared_memory.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/live/live_loader.hpp"
 #include "tests/bench/bench_map.hpp"
 #include "tests/support/page_cache.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "platform/base/byte_count.hpp"
-#include "platform/foreign_heap.hpp"
+#include "platform/memory/foreign_heap.hpp"
 #include "tests/fuzz/input_entries.hpp"
 #include "tests/fuzz/input_seeds.hpp"
 #include "tests/fuzz/mutator.hpp"

@@ -9,8 +9,8 @@
 #include <memory>
 #include <vector>
 
-#include "platform/can_bus.hpp"
-#include "platform/can_errors.hpp"
+#include "platform/can/can_bus.hpp"
+#include "platform/can/can_errors.hpp"
 
 // What every CanBus must do, whatever is behind it. A program includes this file once and names
 // its rigs with INSTANTIATE_TEST_SUITE_P(NAME, CanBusContract, testing::Values(make_rig, ...)).

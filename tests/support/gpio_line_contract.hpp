@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/gpio_line.hpp"
+#include "platform/devices/gpio_line.hpp"
 
 // What every GpioPort must do, whatever is behind it. A program includes this file once and names
 // its rigs with INSTANTIATE_TEST_SUITE_P(NAME, GpioLineContract, testing::Values(make_rig, ...)).

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "platform/base/require.hpp"
-#include "platform/notify.hpp"
+#include "platform/process/notify.hpp"
 
 namespace zonepack::test_support {
 

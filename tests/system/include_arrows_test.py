@@ -12,78 +12,89 @@ from pathlib import Path
 PRODUCTS = ("platform", "runtime", "packer")
 
 ARROWS = {
-    "platform": "platform/base",
     "platform/base": "",
-    "platform/sim": "platform platform/base",
-    "platform/linux": "platform platform/base",
-    "platform/linux/gpiod": "platform",
+    "platform/can": "platform/base platform/files",
+    "platform/devices": "platform/base",
+    "platform/files": "platform/base",
+    "platform/memory": "platform/base platform/files",
+    "platform/process": "platform/base platform/files",
+    "platform/sim": "platform/base platform/can platform/devices platform/files",
+    "platform/linux": "platform/base platform/can platform/devices platform/files platform/memory platform/process",
+    "platform/linux/gpiod": "platform/devices platform/process",
     "platform/version": "",
     "platform/command_line": "platform/base",
 
     "runtime/pack_format": "platform/base",
-    "runtime/pack_format/file": "platform platform/base runtime/pack_format",
-    "runtime/protocol": "platform platform/base runtime/pack_format",
-    "runtime/client": "platform platform/base runtime/memory/shared_layout.hpp runtime/pack_format runtime/protocol",
-    "runtime/report": "platform platform/base runtime/pack_format/file",
+    "runtime/pack_format/file": "platform/base platform/files runtime/pack_format",
+    "runtime/protocol": "platform/base platform/process runtime/pack_format",
+    "runtime/client": "platform/base platform/memory runtime/memory/shared_layout.hpp runtime/pack_format"
+                      " runtime/protocol",
+    "runtime/report": "platform/base platform/files platform/process runtime/pack_format/file",
 
-    "runtime/memory": "platform platform/base runtime/pack_format",
-    "runtime/odometry": "platform platform/base",
+    "runtime/memory": "platform/base platform/files platform/memory platform/process runtime/pack_format",
+    "runtime/odometry": "platform/base platform/can",
     "runtime/zones": "platform/base runtime/odometry runtime/pack_format runtime/pack_format/file",
-    "runtime/map": "platform platform/base runtime/pack_format runtime/pack_format/file",
-    "runtime/control": "platform platform/base runtime/map runtime/memory runtime/odometry runtime/pack_format"
+    "runtime/map": "platform/base platform/files runtime/pack_format runtime/pack_format/file",
+    "runtime/control": "platform/base platform/can runtime/map runtime/memory runtime/odometry runtime/pack_format"
                        " runtime/zones",
 
-    "runtime/settings": "platform platform/base runtime/control runtime/odometry runtime/pack_format runtime/zones",
-    "runtime/run": "platform platform/base runtime/control runtime/map runtime/memory runtime/odometry"
-                   " runtime/pack_format runtime/pack_format/file runtime/report runtime/settings runtime/zones",
-    "runtime/recording": "platform platform/base runtime/control runtime/odometry runtime/pack_format"
+    "runtime/settings": "platform/base platform/devices platform/files platform/memory runtime/control"
+                        " runtime/odometry runtime/pack_format runtime/zones",
+    "runtime/run": "platform/base platform/can platform/devices platform/files platform/memory runtime/control"
+                   " runtime/map runtime/memory runtime/odometry runtime/pack_format runtime/pack_format/file"
+                   " runtime/report runtime/settings runtime/zones",
+    "runtime/recording": "platform/base platform/files runtime/control runtime/odometry runtime/pack_format"
                          " runtime/pack_format/file runtime/run runtime/zones",
-    "runtime/state": "platform platform/base runtime/control runtime/odometry runtime/pack_format"
-                     " runtime/pack_format/file runtime/recording",
-    "runtime/serve": "platform platform/base runtime/control runtime/map runtime/memory runtime/odometry"
-                     " runtime/pack_format runtime/pack_format/file runtime/protocol runtime/run runtime/settings"
-                     " runtime/zones",
-    "runtime/live": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
-                    " runtime/odometry runtime/pack_format/file runtime/recording runtime/run runtime/serve"
-                    " runtime/settings runtime/state runtime/zones",
-    "runtime/replay": "platform platform/base platform/sim runtime/control runtime/map runtime/memory"
+    "runtime/state": "platform/base platform/files platform/process runtime/control runtime/odometry"
+                     " runtime/pack_format runtime/pack_format/file runtime/recording",
+    "runtime/serve": "platform/base platform/files platform/memory platform/process runtime/control runtime/map"
+                     " runtime/memory runtime/odometry runtime/pack_format runtime/pack_format/file runtime/protocol"
+                     " runtime/run runtime/settings runtime/zones",
+    "runtime/live": "platform/base platform/can platform/devices platform/files platform/memory platform/process"
+                    " platform/sim runtime/control runtime/map runtime/memory runtime/odometry"
+                    " runtime/pack_format/file runtime/recording runtime/run runtime/serve runtime/settings"
+                    " runtime/state runtime/zones",
+    "runtime/replay": "platform/base platform/can platform/sim runtime/control runtime/map runtime/memory"
                       " runtime/odometry runtime/pack_format runtime/recording runtime/run runtime/settings",
-    "runtime/evaluate": "platform platform/base runtime/control runtime/evaluate/policies runtime/map runtime/memory"
-                        " runtime/pack_format runtime/pack_format/file runtime/recording runtime/replay runtime/report"
-                        " runtime/run runtime/settings",
+    "runtime/evaluate": "platform/base platform/can platform/files platform/process runtime/control"
+                        " runtime/evaluate/policies runtime/map runtime/memory runtime/pack_format"
+                        " runtime/pack_format/file runtime/recording runtime/replay runtime/report runtime/run"
+                        " runtime/settings",
     "runtime/evaluate/policies": "platform/base runtime/control runtime/memory",
-    "runtime/calibrate": "platform platform/base runtime/odometry runtime/run runtime/settings",
-    "runtime/learn": "platform platform/base runtime/map runtime/pack_format/file runtime/recording runtime/replay"
-                     " runtime/run runtime/zones",
-    "runtime/listen": "platform platform/base platform/sim runtime/calibrate runtime/live runtime/odometry runtime/run"
-                      " runtime/settings",
-    "runtime/localize/replay": "platform platform/base runtime/client runtime/localize/camera runtime/localize/check"
-                               " runtime/localize/features runtime/localize/lost runtime/localize/query runtime/map"
-                               " runtime/odometry runtime/replay runtime/report runtime/run",
-    "runtime/zoned": "platform platform/base platform/command_line platform/version runtime/calibrate runtime/evaluate"
-                     " runtime/learn runtime/listen runtime/live"
-                     " runtime/pack_format/file"
-                     " runtime/recording runtime/replay runtime/report",
-    "runtime/ctl/commands": "platform platform/base runtime/control runtime/odometry runtime/pack_format/file"
-                            " runtime/protocol runtime/run runtime/serve runtime/settings",
-    "runtime/ctl": "platform/command_line platform/signals.hpp platform/version runtime/ctl/commands runtime/protocol",
+    "runtime/calibrate": "platform/base platform/can platform/files runtime/odometry runtime/run runtime/settings",
+    "runtime/learn": "platform/base platform/can platform/files runtime/map runtime/pack_format/file runtime/recording"
+                     " runtime/replay runtime/run runtime/zones",
+    "runtime/listen": "platform/base platform/can platform/files platform/process platform/sim runtime/calibrate"
+                      " runtime/live runtime/odometry runtime/run runtime/settings",
+    "runtime/localize/replay": "platform/base platform/can platform/files platform/process runtime/client"
+                               " runtime/localize/camera runtime/localize/check runtime/localize/features"
+                               " runtime/localize/lost runtime/localize/query runtime/map runtime/odometry"
+                               " runtime/replay runtime/report runtime/run",
+    "runtime/zoned": "platform/base platform/command_line platform/memory platform/process platform/version"
+                     " runtime/calibrate runtime/evaluate runtime/learn runtime/listen runtime/live"
+                     " runtime/pack_format/file runtime/recording runtime/replay runtime/report",
+    "runtime/ctl/commands": "platform/base platform/files platform/process runtime/control runtime/odometry"
+                            " runtime/pack_format/file runtime/protocol runtime/run runtime/serve runtime/settings",
+    "runtime/ctl": "platform/command_line platform/process/signals.hpp platform/version runtime/ctl/commands"
+                   " runtime/protocol",
 
-    "runtime/localize/camera": "platform platform/base runtime/pack_format/file runtime/run",
-    "runtime/localize/features": "platform platform/base runtime/localize/camera",
+    "runtime/localize/camera": "platform/base platform/devices platform/files platform/process"
+                               " runtime/pack_format/file runtime/run",
+    "runtime/localize/features": "platform/base platform/process runtime/localize/camera",
     "runtime/localize/solve": "runtime/localize/camera runtime/odometry",
-    "runtime/localize/query": "platform platform/base runtime/client runtime/localize/camera"
+    "runtime/localize/query": "platform/base platform/process runtime/client runtime/localize/camera"
                               " runtime/localize/features runtime/localize/solve runtime/map runtime/odometry"
                               " runtime/pack_format runtime/pack_format/file",
     "runtime/localize/lost": "platform/base runtime/control runtime/localize/features runtime/localize/query"
                              " runtime/localize/solve runtime/map runtime/odometry runtime/pack_format"
                              " runtime/pack_format/file",
     "runtime/localize/check": "platform/base runtime/localize/camera runtime/localize/query runtime/localize/solve",
-    "runtime/localize/explain": "platform platform/base runtime/localize/camera runtime/localize/query"
+    "runtime/localize/explain": "platform/base platform/files runtime/localize/camera runtime/localize/query"
                                 " runtime/localize/solve runtime/map runtime/odometry runtime/report",
-    "runtime/localize/run": "platform platform/base runtime/client runtime/localize/camera runtime/localize/check"
-                            " runtime/localize/lost runtime/localize/query runtime/odometry runtime/protocol"
-                            " runtime/run runtime/settings",
-    "runtime/localize/zoneloc": "platform platform/command_line platform/version runtime/localize/explain"
+    "runtime/localize/run": "platform/base platform/files platform/process runtime/client runtime/localize/camera"
+                            " runtime/localize/check runtime/localize/lost runtime/localize/query runtime/odometry"
+                            " runtime/protocol runtime/run runtime/settings",
+    "runtime/localize/zoneloc": "platform/command_line platform/process platform/version runtime/localize/explain"
                                 " runtime/localize/replay runtime/localize/run runtime/pack_format/file"
                                 " runtime/protocol runtime/report runtime/run",
 
@@ -98,25 +109,29 @@ ARROWS = {
                       " packer/sources/stella",
     "packer/outline": "packer/record runtime/pack_format",
     "packer/zones": "platform/base runtime/pack_format runtime/pack_format/file",
-    "packer/encode": "packer/record platform platform/base runtime/pack_format runtime/pack_format/file",
+    "packer/encode": "packer/record platform/base platform/files runtime/pack_format runtime/pack_format/file",
     "packer/decode": "packer/record platform/base runtime/pack_format runtime/pack_format/file",
-    "packer/build": "packer/encode packer/record packer/sources packer/zones platform platform/base platform/version"
-                    " runtime/pack_format/file",
-    "packer/update": "packer/align packer/build packer/decode packer/encode packer/record packer/sources packer/zones platform"
-                     " platform/base runtime/pack_format/file",
-    "packer/verify": "packer/decode packer/record packer/zones platform platform/base runtime/pack_format"
+    "packer/build": "packer/encode packer/record packer/sources packer/zones platform/base platform/files"
+                    " platform/process platform/version runtime/pack_format/file",
+    "packer/update": "packer/align packer/build packer/decode packer/encode packer/record packer/sources packer/zones"
+                     " platform/base platform/process runtime/pack_format/file",
+    "packer/verify": "packer/decode packer/record packer/zones platform/base platform/files runtime/pack_format"
                      " runtime/pack_format/file",
     "packer/export": "packer/decode packer/record platform/base runtime/pack_format",
     "packer/preview": "packer/console packer/decode packer/outline packer/zones platform/base runtime/report",
     "packer/console": "platform/base runtime/pack_format",
     "packer/inspect": "packer/console packer/decode packer/verify platform/base runtime/pack_format/file",
     "packer/suggest": "packer/zones runtime/pack_format",
-    "packer/tune": "packer/console packer/decode packer/encode packer/outline packer/preview packer/update packer/zones"
-                   " platform platform/base runtime/pack_format runtime/pack_format/file runtime/report",
+    "packer/tune": "packer/console packer/decode packer/encode packer/outline packer/preview packer/update"
+                   " packer/zones platform/base platform/process runtime/pack_format runtime/pack_format/file"
+                   " runtime/report",
     "packer/commands": "packer/build packer/console packer/decode packer/export packer/inspect packer/outline"
-                       " packer/preview packer/record packer/sources packer/suggest packer/tune packer/update packer/verify packer/zones"
-                       " platform platform/base platform/command_line runtime/pack_format runtime/pack_format/file runtime/report",
-    "packer": "platform/command_line platform/signals.hpp packer/commands packer/record/source_kind.hpp platform/version runtime/pack_format/file",
+                       " packer/preview packer/record packer/sources packer/suggest packer/tune packer/update"
+                       " packer/verify packer/zones platform/base platform/command_line platform/files"
+                       " platform/process runtime/pack_format runtime/pack_format/file runtime/report",
+    "packer": "packer/commands packer/record/source_kind.hpp platform/command_line platform/process/signals.hpp"
+              " platform/version runtime/pack_format/file",
+
 }
 
 GPIOD = r"gpiod\.h"

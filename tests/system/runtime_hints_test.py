@@ -30,7 +30,7 @@ ON_THE_ROBOT = {"ip link", "sysctl"}
 # What is typed elsewhere, is no command of its own but where to look, or would change this machine.
 NOT_TYPED = {"ip -details": "lists devices", "modprobe": "loads a module", "apt install": "installs", "usermod": "changes a user",
              "gpioinfo": "lists lines", "gpiodetect": "lists chips", "dmesg": "shows the kernel's log",
-             "python3 -m": "tests/unit/platform/can_log_asc_test.cpp", "ulimit -f": "tests/system/serve/ending_test.sh",
+             "python3 -m": "tests/unit/platform/can/can_log_asc_test.cpp", "ulimit -f": "tests/system/serve/ending_test.sh",
              "ulimit -l": "a limit of the unit", "ulimit -r": "a limit of the unit"}
 typed = set()
 

@@ -15,9 +15,9 @@
 #include <optional>
 #include <vector>
 
-#include "platform/clock.hpp"
-#include "platform/edge_filter.hpp"
-#include "platform/gpio_line.hpp"
+#include "platform/devices/edge_filter.hpp"
+#include "platform/devices/gpio_line.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

@@ -8,13 +8,13 @@
 #include <fstream>
 #include <iostream>
 
-#include "platform/atomic_file.hpp"
 #include "platform/base/byte_count.hpp"
 #include "platform/base/counted.hpp"
-#include "platform/clock.hpp"
-#include "platform/output_place.hpp"
-#include "platform/terminal.hpp"
-#include "platform/write_output.hpp"
+#include "platform/files/atomic_file.hpp"
+#include "platform/files/output_place.hpp"
+#include "platform/files/write_output.hpp"
+#include "platform/process/clock.hpp"
+#include "platform/process/terminal.hpp"
 #include "runtime/ctl/commands/answer_json.hpp"
 #include "runtime/ctl/commands/figures.hpp"
 #include "runtime/ctl/commands/localizer_figures.hpp"

@@ -2,8 +2,8 @@
 // zonectl watch: the view, five times a second.
 #include <iostream>
 
-#include "platform/clock.hpp"
-#include "platform/terminal.hpp"
+#include "platform/process/clock.hpp"
+#include "platform/process/terminal.hpp"
 #include "runtime/ctl/commands/commands.hpp"
 #include "runtime/ctl/commands/session.hpp"
 #include "runtime/ctl/commands/watch_view.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/localize/camera/image_file.hpp"
 
 namespace zonepack::localize {

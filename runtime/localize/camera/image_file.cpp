@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "platform/base/file_kind.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
 #include "runtime/localize/camera/image_refusal.hpp"
 
 namespace zonepack::localize {

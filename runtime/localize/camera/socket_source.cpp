@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/localize/camera/grey_image.hpp"
 
 namespace zonepack::localize {

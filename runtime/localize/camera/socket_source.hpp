@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "platform/local_socket.hpp"
+#include "platform/process/local_socket.hpp"
 #include "runtime/localize/camera/image_source.hpp"
 #include "runtime/localize/camera/raw_image.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "platform/video_device.hpp"
+#include "platform/devices/video_device.hpp"
 #include "runtime/localize/camera/image_source.hpp"
 
 namespace zonepack::localize {

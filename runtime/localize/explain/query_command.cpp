@@ -12,7 +12,7 @@
 #include "platform/base/failure.hpp"
 #include "platform/base/json_text.hpp"
 #include "platform/base/shell_word.hpp"
-#include "platform/write_output.hpp"
+#include "platform/files/write_output.hpp"
 #include "runtime/localize/camera/calibration.hpp"
 #include "runtime/localize/camera/image_file.hpp"
 #include "runtime/localize/explain/query_drawing.hpp"

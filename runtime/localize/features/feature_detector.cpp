@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "platform/base/require.hpp"
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/localize/features/banded_corners.hpp"
 #include "runtime/localize/features/orb_comparisons.hpp"
 

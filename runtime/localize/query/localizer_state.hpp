@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/localize/features/feature_detector.hpp"
 #include "runtime/localize/query/candidates.hpp"
 #include "runtime/localize/query/localizer.hpp"

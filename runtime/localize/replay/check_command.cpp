@@ -7,8 +7,8 @@
 #include <iostream>
 #include <utility>
 
-#include "platform/atomic_file.hpp"
 #include "platform/base/json_text.hpp"
+#include "platform/files/atomic_file.hpp"
 #include "runtime/localize/camera/calibration.hpp"
 #include "runtime/localize/check/calibration_text.hpp"
 #include "runtime/run/output_check.hpp"

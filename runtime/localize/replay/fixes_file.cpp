@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cstdio>
 
-#include "platform/atomic_file.hpp"
+#include "platform/files/atomic_file.hpp"
 
 namespace zonepack::localize {
 namespace {

@@ -9,11 +9,11 @@
 #include <iostream>
 #include <utility>
 
-#include "platform/atomic_file.hpp"
 #include "platform/base/counted.hpp"
 #include "platform/base/number_text.hpp"
-#include "platform/can_log.hpp"
-#include "platform/progress.hpp"
+#include "platform/can/can_log.hpp"
+#include "platform/files/atomic_file.hpp"
+#include "platform/process/progress.hpp"
 #include "runtime/localize/camera/calibration.hpp"
 #include "runtime/localize/camera/image_file.hpp"
 #include "runtime/localize/camera/image_list.hpp"

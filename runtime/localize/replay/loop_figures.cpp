@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "platform/realtime.hpp"
+#include "platform/process/realtime.hpp"
 #include "runtime/odometry/poses_apart.hpp"
 
 namespace zonepack::localize {

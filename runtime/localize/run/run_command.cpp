@@ -8,10 +8,10 @@
 #include <optional>
 #include <utility>
 
-#include "platform/clock.hpp"
-#include "platform/realtime.hpp"
-#include "platform/signals.hpp"
-#include "platform/write_output.hpp"
+#include "platform/files/write_output.hpp"
+#include "platform/process/clock.hpp"
+#include "platform/process/realtime.hpp"
+#include "platform/process/signals.hpp"
 #include "runtime/localize/camera/calibration.hpp"
 #include "runtime/localize/check/calibration_text.hpp"
 #include "runtime/localize/check/calibration_watch.hpp"

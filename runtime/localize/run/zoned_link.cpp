@@ -5,7 +5,7 @@
 #include <cerrno>
 #include <cmath>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/localize/query/fix_slack.hpp"
 #include "runtime/odometry/det_math.hpp"
 

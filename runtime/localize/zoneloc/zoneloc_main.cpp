@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "platform/command_line/command_line.hpp"
-#include "platform/signals.hpp"
+#include "platform/process/signals.hpp"
 #include "platform/version/version.hpp"
 #include "runtime/localize/zoneloc/add_query.hpp"
 #include "runtime/localize/zoneloc/add_replay.hpp"

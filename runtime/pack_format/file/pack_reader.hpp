@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "platform/base/result.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
 #include "runtime/pack_format/file/pack_file.hpp"
 #include "runtime/pack_format/zone_view.hpp"
 

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <iostream>
 
-#include "platform/clock.hpp"
-#include "platform/video_device.hpp"
+#include "platform/devices/video_device.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

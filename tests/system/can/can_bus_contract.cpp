@@ -18,9 +18,9 @@
 #include <iostream>
 #include <sstream>
 
-#include "platform/clock.hpp"
-#include "platform/descriptor.hpp"
-#include "platform/socketcan.hpp"
+#include "platform/can/socketcan.hpp"
+#include "platform/files/descriptor.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

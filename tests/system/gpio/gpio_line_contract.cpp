@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

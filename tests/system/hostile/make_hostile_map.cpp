@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 #include "tests/support/hostile_map.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -4,7 +4,7 @@
 
 #include "packer/build/manifest_writer.hpp"
 #include "packer/encode/pack_writer.hpp"
-#include "platform/atomic_file.hpp"
+#include "platform/files/atomic_file.hpp"
 #include "runtime/control/zone_keeper.hpp"
 #include "runtime/map/loader.hpp"
 #include "runtime/memory/arena.hpp"

@@ -9,8 +9,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "platform/clock.hpp"
-#include "platform/realtime.hpp"
+#include "platform/process/clock.hpp"
+#include "platform/process/realtime.hpp"
 #include "runtime/run/histogram.hpp"
 
 namespace {

@@ -16,7 +16,7 @@
 #include <string>
 #include <string_view>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 
 namespace {
 

@@ -15,7 +15,7 @@
 #include <string>
 
 #include "platform/base/require.hpp"
-#include "platform/shared_memory.hpp"
+#include "platform/memory/shared_memory.hpp"
 #include "runtime/memory/residency.hpp"
 #include "tests/support/shared_zones.hpp"
 #include "tests/system/readers/reader_roles.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "packer/decode/map_reader.hpp"
-#include "platform/shared_memory.hpp"
+#include "platform/memory/shared_memory.hpp"
 #include "runtime/client/shared_reader.hpp"
 #include "runtime/pack_format/file/checksum.hpp"
 #include "tests/support/shared_zones.hpp"

@@ -10,7 +10,7 @@
 #include "packer/decode/record_decoder.hpp"
 #include "packer/encode/pack_writer.hpp"
 #include "packer/verify/map_verifier.hpp"
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/pack_format/file/pack_reader.hpp"
 #include "tests/support/memory_folder.hpp"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "packer/build/manifest_writer.hpp"
-#include "platform/atomic_file.hpp"
+#include "platform/files/atomic_file.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/run/map_demand.hpp"
 #include "tests/support/temporary_folder.hpp"

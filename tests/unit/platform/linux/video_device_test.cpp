@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/video_device.hpp"
+#include "platform/devices/video_device.hpp"
 
 #include <gmock/gmock.h>
 #include <linux/videodev2.h>
@@ -10,8 +10,8 @@
 #include <set>
 #include <vector>
 
-#include "platform/clock.hpp"
 #include "platform/linux/video_calls.hpp"
+#include "platform/process/clock.hpp"
 
 namespace zonepack {
 namespace {

@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <thread>
 
-#include "platform/storage.hpp"
+#include "platform/files/storage.hpp"
 #include "tests/support/numbered_file.hpp"
 
 namespace zonepack {

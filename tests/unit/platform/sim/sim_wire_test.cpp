@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "platform/can_errors.hpp"
+#include "platform/can/can_errors.hpp"
 
 namespace zonepack {
 namespace {

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "platform/base/number_text.hpp"
-#include "platform/can_log.hpp"
+#include "platform/can/can_log.hpp"
 #include "runtime/calibrate/wheel_watch.hpp"
 #include "runtime/run/run_files.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "packer/encode/pack_writer.hpp"
-#include "platform/shared_memory.hpp"
+#include "platform/memory/shared_memory.hpp"
 #include "runtime/client/shared_reader.hpp"
 #include "runtime/client/zonepack_client.h"
 #include "runtime/pack_format/file/pack_reader.hpp"

@@ -3,7 +3,7 @@
 
 #include "packer/decode/record_decoder.hpp"
 #include "packer/encode/pack_writer.hpp"
-#include "platform/shared_memory.hpp"
+#include "platform/memory/shared_memory.hpp"
 #include "runtime/pack_format/file/pack_reader.hpp"
 #include "tests/support/shared_zones.hpp"
 #include "tests/support/signature_recipe.hpp"

@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include "platform/local_socket.hpp"
-#include "platform/shared_memory.hpp"
+#include "platform/memory/shared_memory.hpp"
+#include "platform/process/local_socket.hpp"
 #include "runtime/protocol/messages.hpp"
 
 namespace zonepack::test_support {

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "packer/decode/record_decoder.hpp"
-#include "platform/shared_memory.hpp"
+#include "platform/memory/shared_memory.hpp"
 #include "runtime/pack_format/file/pack_reader.hpp"
 #include "tests/support/decoded_database.hpp"
 #include "tests/support/rtabmap_fixture.hpp"

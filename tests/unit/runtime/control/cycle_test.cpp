@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "platform/can_errors.hpp"
+#include "platform/can/can_errors.hpp"
 #include "tests/unit/runtime/control/cycle_in_rooms.hpp"
 
 namespace zonepack {

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <vector>
 
-#include "platform/can_log.hpp"
+#include "platform/can/can_log.hpp"
 #include "platform/sim/sim_can_bus.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "platform/can_log_line.hpp"
+#include "platform/can/can_log_line.hpp"
 #include "runtime/live/script_source.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "platform/sim/sim_can_bus.hpp"
 #include "runtime/run/modelled_loader.hpp"
 #include "tests/support/rooms.hpp"

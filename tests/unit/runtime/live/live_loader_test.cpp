@@ -7,7 +7,7 @@
 #include <cstring>
 #include <memory>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/pack_format/zone_view.hpp"
 
 namespace zonepack {

@@ -6,7 +6,7 @@
 
 #include <thread>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "platform/sim/sim_gpio.hpp"
 
 namespace zonepack {

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "platform/can_log.hpp"
+#include "platform/can/can_log.hpp"
 #include "platform/sim/sim_can_bus.hpp"
 #include "runtime/recording/input_tap.hpp"
 #include "runtime/recording/input_writer.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/can_log.hpp"
+#include "platform/can/can_log.hpp"
 #include "platform/sim/sim_can_bus.hpp"
 #include "runtime/odometry/pose_filter.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"

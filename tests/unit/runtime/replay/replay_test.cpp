@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "platform/can_log.hpp"
+#include "platform/can/can_log.hpp"
 #include "tests/support/sample_catalog.hpp"
 
 namespace zonepack {

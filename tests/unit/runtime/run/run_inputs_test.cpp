@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/sysinfo.h>
 
-#include "platform/board.hpp"
+#include "platform/devices/board.hpp"
 
 namespace zonepack {
 namespace {

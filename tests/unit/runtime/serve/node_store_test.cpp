@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "packer/build/manifest_writer.hpp"
-#include "platform/atomic_file.hpp"
+#include "platform/files/atomic_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace zonepack {

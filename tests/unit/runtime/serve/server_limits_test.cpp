@@ -7,7 +7,7 @@
 
 #include <atomic>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "runtime/serve/server.hpp"
 #include "tests/unit/runtime/serve/served.hpp"
 

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "platform/clock.hpp"
+#include "platform/process/clock.hpp"
 #include "tests/unit/runtime/serve/served.hpp"
 
 namespace zonepack {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "platform/can_log.hpp"
+#include "platform/can/can_log.hpp"
 #include "runtime/settings/settings.hpp"
 
 namespace zonepack {

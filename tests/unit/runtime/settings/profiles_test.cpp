@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/can_log.hpp"
+#include "platform/can/can_log.hpp"
 #include "runtime/odometry/det_math.hpp"
 #include "runtime/settings/settings.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "platform/account.hpp"
+#include "platform/memory/account.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace zonepack {

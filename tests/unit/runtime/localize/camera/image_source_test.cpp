@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "platform/clock.hpp"
-#include "platform/local_socket.hpp"
+#include "platform/process/clock.hpp"
+#include "platform/process/local_socket.hpp"
 #include "runtime/localize/camera/folder_source.hpp"
 #include "runtime/localize/camera/socket_source.hpp"
 #include "runtime/localize/camera/video_source.hpp"

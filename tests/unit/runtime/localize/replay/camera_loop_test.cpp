@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "platform/can_log.hpp"
+#include "platform/can/can_log.hpp"
 #include "runtime/localize/query/fix_slack.hpp"
 #include "runtime/localize/replay/fixes_file.hpp"
 #include "runtime/localize/replay/loop_figures.hpp"
