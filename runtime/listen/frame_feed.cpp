@@ -8,8 +8,8 @@
 #include "platform/can/socketcan.hpp"
 #include "platform/process/clock.hpp"
 #include "platform/sim/sim_can_bus.hpp"
-#include "runtime/live/bus_messages.hpp"
-#include "runtime/live/script_source.hpp"
+#include "runtime/live/bus/script_source.hpp"
+#include "runtime/live/messages/bus_messages.hpp"
 
 namespace zonepack {
 namespace {

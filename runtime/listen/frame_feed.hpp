@@ -9,7 +9,7 @@
 #include "platform/base/failure.hpp"
 #include "platform/can/can_frame_source.hpp"
 #include "platform/can/can_log.hpp"
-#include "runtime/live/can_source.hpp"
+#include "runtime/live/bus/can_source.hpp"
 #include "runtime/settings/settings.hpp"
 
 namespace zonepack {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "runtime/live/live_source.hpp"
+#include "runtime/live/bus/live_source.hpp"
 #include "runtime/odometry/se2.hpp"
 #include "runtime/run/rejected_text.hpp"
 

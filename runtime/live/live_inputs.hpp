@@ -5,8 +5,8 @@
 #include <string>
 
 #include "platform/base/failure.hpp"
-#include "runtime/live/can_capture.hpp"
-#include "runtime/live/live_source.hpp"
+#include "runtime/live/bus/can_capture.hpp"
+#include "runtime/live/bus/live_source.hpp"
 
 namespace zonepack {
 

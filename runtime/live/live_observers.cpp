@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "platform/process/clock.hpp"
-#include "runtime/live/print_line.hpp"
+#include "runtime/live/messages/print_line.hpp"
 
 namespace zonepack {
 namespace {

@@ -7,8 +7,8 @@
 #include "platform/base/require.hpp"
 #include "platform/process/clock.hpp"
 #include "platform/process/signals.hpp"
-#include "runtime/live/bus_messages.hpp"
-#include "runtime/live/print_line.hpp"
+#include "runtime/live/messages/bus_messages.hpp"
+#include "runtime/live/messages/print_line.hpp"
 
 namespace zonepack {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "platform/files/storage.hpp"
 #include "platform/process/realtime.hpp"
-#include "runtime/live/print_line.hpp"
+#include "runtime/live/messages/print_line.hpp"
 #include "runtime/map/next_version.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
 

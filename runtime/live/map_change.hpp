@@ -6,7 +6,7 @@
 #include <string>
 
 #include "platform/process/slow_job.hpp"
-#include "runtime/live/control_loop.hpp"
+#include "runtime/live/cycle/control_loop.hpp"
 #include "runtime/live/run_recording.hpp"
 #include "runtime/live/service.hpp"
 #include "runtime/memory/shared_map.hpp"

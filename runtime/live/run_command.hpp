@@ -5,7 +5,7 @@
 #include <string>
 
 #include "platform/base/failure.hpp"
-#include "runtime/live/can_source.hpp"
+#include "runtime/live/bus/can_source.hpp"
 #include "runtime/run/run_inputs.hpp"
 
 namespace zonepack {

@@ -3,7 +3,7 @@
 
 #include <iostream>
 
-#include "runtime/live/line_requests.hpp"
+#include "runtime/live/gpio/line_requests.hpp"
 #include "runtime/settings/settings.hpp"
 
 namespace zonepack {

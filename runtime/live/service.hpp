@@ -11,7 +11,7 @@
 #include "platform/memory/spsc_queue.hpp"
 #include "platform/process/notify.hpp"
 #include "platform/process/realtime.hpp"
-#include "runtime/live/live_memory.hpp"
+#include "runtime/live/cycle/live_memory.hpp"
 #include "runtime/run/map_version.hpp"
 #include "runtime/serve/server.hpp"
 

@@ -10,7 +10,7 @@
 #include "platform/version/version.hpp"
 #include "runtime/calibrate/calibrate_command.hpp"
 #include "runtime/listen/listen_command.hpp"
-#include "runtime/live/can_source.hpp"
+#include "runtime/live/bus/can_source.hpp"
 #include "runtime/live/check_command.hpp"
 #include "runtime/live/run_command.hpp"
 #include "runtime/live/safe_outputs_command.hpp"

@@ -22,7 +22,7 @@
 
 #include "platform/memory/shared_memory.hpp"
 #include "platform/process/clock.hpp"
-#include "runtime/live/live_loader.hpp"
+#include "runtime/live/cycle/live_loader.hpp"
 #include "tests/bench/bench_map.hpp"
 #include "tests/support/page_cache.hpp"
 

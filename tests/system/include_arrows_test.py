@@ -50,10 +50,18 @@ ARROWS = {
     "runtime/serve": "platform/base platform/files platform/memory platform/process runtime/control runtime/map"
                      " runtime/memory runtime/odometry runtime/pack_format runtime/pack_format/file runtime/protocol"
                      " runtime/run runtime/settings runtime/zones",
+    "runtime/live/bus": "platform/base platform/can platform/files platform/memory platform/process platform/sim"
+                        " runtime/live/cycle runtime/odometry runtime/run runtime/settings",
+    "runtime/live/cycle": "platform/base platform/can platform/memory platform/process runtime/control"
+                          " runtime/live/messages runtime/map runtime/memory runtime/run runtime/settings",
+    "runtime/live/gpio": "platform/base platform/devices platform/memory platform/process runtime/control"
+                         " runtime/live/messages runtime/run runtime/settings",
+    "runtime/live/messages": "platform/base platform/can platform/files platform/memory platform/process"
+                             " runtime/control runtime/run",
     "runtime/live": "platform/base platform/can platform/devices platform/files platform/memory platform/process"
-                    " platform/sim runtime/control runtime/map runtime/memory runtime/odometry"
-                    " runtime/pack_format/file runtime/recording runtime/run runtime/serve runtime/settings"
-                    " runtime/state runtime/zones",
+                    " runtime/live/bus runtime/live/cycle runtime/live/gpio runtime/live/messages runtime/map"
+                    " runtime/memory runtime/pack_format/file runtime/recording runtime/run runtime/serve"
+                    " runtime/settings runtime/state runtime/zones",
     "runtime/replay": "platform/base platform/can platform/sim runtime/control runtime/map runtime/memory"
                       " runtime/odometry runtime/pack_format runtime/recording runtime/run runtime/settings",
     "runtime/evaluate": "platform/base platform/can platform/files platform/process runtime/control"
@@ -65,13 +73,13 @@ ARROWS = {
     "runtime/learn": "platform/base platform/can platform/files runtime/map runtime/pack_format/file runtime/recording"
                      " runtime/replay runtime/run runtime/zones",
     "runtime/listen": "platform/base platform/can platform/files platform/process platform/sim runtime/calibrate"
-                      " runtime/live runtime/odometry runtime/run runtime/settings",
+                      " runtime/live/bus runtime/live/messages runtime/odometry runtime/run runtime/settings",
     "runtime/localize/replay": "platform/base platform/can platform/files platform/process runtime/client"
                                " runtime/localize/camera runtime/localize/check runtime/localize/features"
                                " runtime/localize/lost runtime/localize/query runtime/map runtime/odometry"
                                " runtime/replay runtime/report runtime/run",
     "runtime/zoned": "platform/base platform/command_line platform/memory platform/process platform/version"
-                     " runtime/calibrate runtime/evaluate runtime/learn runtime/listen runtime/live"
+                     " runtime/calibrate runtime/evaluate runtime/learn runtime/listen runtime/live runtime/live/bus"
                      " runtime/pack_format/file runtime/recording runtime/replay runtime/report",
     "runtime/ctl/commands": "platform/base platform/files platform/process runtime/control runtime/odometry"
                             " runtime/pack_format/file runtime/protocol runtime/run runtime/serve runtime/settings",
@@ -132,6 +140,7 @@ ARROWS = {
     "packer": "packer/commands packer/record/source_kind.hpp platform/command_line platform/process/signals.hpp"
               " platform/version runtime/pack_format/file",
 
+
 }
 
 GPIOD = r"gpiod\.h"
@@ -143,7 +152,7 @@ FOREIGN = {
     r"lz4": "runtime/pack_format/file runtime/recording packer/build packer/encode",
     r"xxhash": "runtime/pack_format/file",
     r"sodium": "runtime/pack_format/file runtime/run",
-    r"yaml-cpp/": "packer/outline runtime/settings runtime/live runtime/localize/camera",
+    r"yaml-cpp/": "packer/outline runtime/settings runtime/live/bus runtime/localize/camera",
     r"Eigen/": "packer/align packer/sources/stella runtime/calibrate runtime/localize/camera runtime/localize/features runtime/localize/solve runtime/localize/query runtime/localize/check",
     r"CLI/": "platform/command_line runtime/zoned runtime/ctl runtime/localize/zoneloc packer packer/commands",
     r"sqlite3\.h": "packer/sources/sqlite packer/export",
