@@ -10,11 +10,11 @@
 #include "runtime/calibrate/wheel_hints.hpp"
 #include "runtime/calibrate/wheel_watch.hpp"
 #include "runtime/odometry/det_math.hpp"
-#include "runtime/run/log_faults.hpp"
-#include "runtime/run/log_match.hpp"
-#include "runtime/run/log_time.hpp"
+#include "runtime/run/inputs/log_faults.hpp"
+#include "runtime/run/inputs/log_match.hpp"
+#include "runtime/run/inputs/log_time.hpp"
+#include "runtime/run/inputs/rejected_text.hpp"
 #include "runtime/run/output_check.hpp"
-#include "runtime/run/rejected_text.hpp"
 
 namespace zonepack {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "runtime/calibrate/wheel_calibration.hpp"
 #include "runtime/odometry/can_signals.hpp"
-#include "runtime/run/run_files.hpp"
+#include "runtime/run/inputs/run_files.hpp"
 
 namespace zonepack {
 

@@ -7,7 +7,7 @@
 
 #include "platform/base/failure.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
-#include "runtime/run/run_files.hpp"
+#include "runtime/run/inputs/run_files.hpp"
 
 // Scale of the wheels and track of a robot with a left and a right side, from a drive whose true
 // path is known. Not for the control thread.

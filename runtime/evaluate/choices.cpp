@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "runtime/pack_format/file/accounting.hpp"
-#include "runtime/run/map_model.hpp"
+#include "runtime/run/maps/map_model.hpp"
 
 namespace zonepack {
 namespace {

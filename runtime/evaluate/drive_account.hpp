@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "runtime/evaluate/bounds.hpp"
-#include "runtime/run/modelled_loader.hpp"
+#include "runtime/run/maps/modelled_loader.hpp"
 #include "runtime/run/run.hpp"
 
 namespace zonepack {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "runtime/recording/recording_reader.hpp"
-#include "runtime/run/log_match.hpp"
+#include "runtime/run/inputs/log_match.hpp"
 
 namespace zonepack {
 namespace {

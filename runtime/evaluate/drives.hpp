@@ -13,11 +13,11 @@
 #include "runtime/control/command.hpp"
 #include "runtime/control/line_edge.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/run/baseline.hpp"
-#include "runtime/run/command_lines.hpp"
-#include "runtime/run/log_time.hpp"
-#include "runtime/run/run_files.hpp"
-#include "runtime/run/run_start.hpp"
+#include "runtime/run/figures/baseline.hpp"
+#include "runtime/run/inputs/command_lines.hpp"
+#include "runtime/run/inputs/log_time.hpp"
+#include "runtime/run/inputs/run_files.hpp"
+#include "runtime/run/inputs/run_start.hpp"
 #include "runtime/settings/settings.hpp"
 
 namespace zonepack {

@@ -18,9 +18,9 @@
 #include "runtime/evaluate/evaluate_report.hpp"
 #include "runtime/evaluate/evaluation.hpp"
 #include "runtime/evaluate/jobs.hpp"
-#include "runtime/run/log_faults.hpp"
+#include "runtime/run/inputs/log_faults.hpp"
+#include "runtime/run/inputs/run_inputs.hpp"
 #include "runtime/run/output_check.hpp"
-#include "runtime/run/run_inputs.hpp"
 
 namespace zonepack {
 namespace {

@@ -13,9 +13,9 @@
 #include "runtime/evaluate/drives.hpp"
 #include "runtime/evaluate/policies/eviction_names.hpp"
 #include "runtime/evaluate/preload_modes.hpp"
-#include "runtime/run/run_inputs.hpp"
-#include "runtime/run/run_summary.hpp"
-#include "runtime/run/run_trace.hpp"
+#include "runtime/run/figures/run_summary.hpp"
+#include "runtime/run/figures/run_trace.hpp"
+#include "runtime/run/inputs/run_inputs.hpp"
 
 namespace zonepack {
 

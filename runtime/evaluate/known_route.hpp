@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/run/command_lines.hpp"
+#include "runtime/run/inputs/command_lines.hpp"
 #include "runtime/run/run.hpp"
 
 namespace zonepack {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/run/modelled_loader.hpp"
+#include "runtime/run/maps/modelled_loader.hpp"
 #include "runtime/run/run.hpp"
 
 namespace zonepack {

@@ -16,9 +16,9 @@
 #include "runtime/learn/prediction_score.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/pack_format/file/transitions_bytes.hpp"
-#include "runtime/run/map_demand.hpp"
+#include "runtime/run/inputs/run_inputs.hpp"
+#include "runtime/run/maps/map_demand.hpp"
 #include "runtime/run/output_check.hpp"
-#include "runtime/run/run_inputs.hpp"
 
 namespace zonepack {
 namespace {

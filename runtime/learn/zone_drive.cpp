@@ -15,10 +15,10 @@
 #include "runtime/recording/block.hpp"
 #include "runtime/replay/recorded_run.hpp"
 #include "runtime/replay/replay.hpp"
-#include "runtime/run/log_match.hpp"
-#include "runtime/run/log_time.hpp"
-#include "runtime/run/run_inputs.hpp"
-#include "runtime/run/stamp_text.hpp"
+#include "runtime/run/figures/stamp_text.hpp"
+#include "runtime/run/inputs/log_match.hpp"
+#include "runtime/run/inputs/log_time.hpp"
+#include "runtime/run/inputs/run_inputs.hpp"
 
 namespace zonepack {
 namespace {

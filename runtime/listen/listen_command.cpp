@@ -11,9 +11,9 @@
 #include "platform/process/terminal.hpp"
 #include "runtime/listen/listen_text.hpp"
 #include "runtime/listen/listener.hpp"
-#include "runtime/run/log_faults.hpp"
-#include "runtime/run/log_match.hpp"
-#include "runtime/run/log_time.hpp"
+#include "runtime/run/inputs/log_faults.hpp"
+#include "runtime/run/inputs/log_match.hpp"
+#include "runtime/run/inputs/log_time.hpp"
 
 namespace zonepack {
 namespace {

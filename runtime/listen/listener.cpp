@@ -7,7 +7,7 @@
 
 #include "runtime/live/bus/live_source.hpp"
 #include "runtime/odometry/se2.hpp"
-#include "runtime/run/rejected_text.hpp"
+#include "runtime/run/inputs/rejected_text.hpp"
 
 namespace zonepack {
 namespace {

@@ -18,8 +18,8 @@
 #include "runtime/map/load_fault.hpp"
 #include "runtime/map/loader.hpp"
 #include "runtime/memory/shared_layout.hpp"
-#include "runtime/run/log_match.hpp"
-#include "runtime/run/map_model.hpp"
+#include "runtime/run/inputs/log_match.hpp"
+#include "runtime/run/maps/map_model.hpp"
 #include "runtime/settings/socket_place.hpp"
 
 namespace zonepack {

@@ -5,7 +5,7 @@
 
 #include "platform/files/atomic_file.hpp"
 #include "platform/files/storage.hpp"
-#include "runtime/run/run_inputs.hpp"
+#include "runtime/run/inputs/run_inputs.hpp"
 
 namespace zonepack {
 namespace {

@@ -17,8 +17,8 @@
 #include "runtime/live/live_inputs.hpp"
 #include "runtime/live/live_observers.hpp"
 #include "runtime/live/map_change.hpp"
+#include "runtime/run/inputs/run_inputs.hpp"
 #include "runtime/run/run.hpp"
-#include "runtime/run/run_inputs.hpp"
 
 namespace zonepack {
 

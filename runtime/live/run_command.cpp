@@ -16,10 +16,10 @@
 #include "runtime/live/live_run.hpp"
 #include "runtime/map/next_version.hpp"
 #include "runtime/pack_format/file/manifest_file.hpp"
-#include "runtime/run/log_faults.hpp"
-#include "runtime/run/log_time.hpp"
+#include "runtime/run/figures/summary_text.hpp"
+#include "runtime/run/inputs/log_faults.hpp"
+#include "runtime/run/inputs/log_time.hpp"
 #include "runtime/run/output_check.hpp"
-#include "runtime/run/summary_text.hpp"
 #include "runtime/settings/socket_place.hpp"
 
 namespace zonepack {

@@ -6,7 +6,7 @@
 
 #include "platform/base/failure.hpp"
 #include "runtime/live/bus/can_source.hpp"
-#include "runtime/run/run_inputs.hpp"
+#include "runtime/run/inputs/run_inputs.hpp"
 
 namespace zonepack {
 

@@ -12,7 +12,7 @@
 #include "platform/process/notify.hpp"
 #include "platform/process/realtime.hpp"
 #include "runtime/live/cycle/live_memory.hpp"
-#include "runtime/run/map_version.hpp"
+#include "runtime/run/maps/map_version.hpp"
 #include "runtime/serve/server.hpp"
 
 namespace zonepack {

@@ -11,8 +11,8 @@
 #include "runtime/odometry/pose.hpp"
 #include "runtime/pack_format/limits.hpp"
 #include "runtime/recording/bytes.hpp"
-#include "runtime/run/map_model.hpp"
-#include "runtime/run/run_start.hpp"
+#include "runtime/run/inputs/run_start.hpp"
+#include "runtime/run/maps/map_model.hpp"
 #include "runtime/zones/transitions_file.hpp"
 
 namespace zonepack {

@@ -7,7 +7,7 @@
 #include "runtime/control/cycle.hpp"
 #include "runtime/odometry/pose_filter.hpp"
 #include "runtime/replay/resident_zones.hpp"
-#include "runtime/run/command_lines.hpp"
+#include "runtime/run/inputs/command_lines.hpp"
 
 namespace zonepack {
 

@@ -8,7 +8,7 @@
 #include "runtime/map/catalog.hpp"
 #include "runtime/memory/arena.hpp"
 #include "runtime/pack_format/zone_view.hpp"
-#include "runtime/run/modelled_loader.hpp"
+#include "runtime/run/maps/modelled_loader.hpp"
 
 namespace zonepack {
 

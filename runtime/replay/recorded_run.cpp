@@ -8,9 +8,9 @@
 
 #include "platform/base/require.hpp"
 #include "runtime/replay/recorded_loader.hpp"
-#include "runtime/run/modelled_loader.hpp"
+#include "runtime/run/inputs/run_inputs.hpp"
+#include "runtime/run/maps/modelled_loader.hpp"
 #include "runtime/run/run.hpp"
-#include "runtime/run/run_inputs.hpp"
 
 namespace zonepack {
 namespace {

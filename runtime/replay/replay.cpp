@@ -8,7 +8,7 @@
 #include "platform/base/require.hpp"
 #include "platform/sim/sim_can_bus.hpp"
 #include "runtime/replay/pack_filler.hpp"
-#include "runtime/run/modelled_loader.hpp"
+#include "runtime/run/maps/modelled_loader.hpp"
 #include "runtime/run/run.hpp"
 
 namespace zonepack {

@@ -11,13 +11,13 @@
 #include "runtime/control/cycle.hpp"
 #include "runtime/map/catalog.hpp"
 #include "runtime/replay/fix_source.hpp"
-#include "runtime/run/command_lines.hpp"
-#include "runtime/run/map_model.hpp"
+#include "runtime/run/figures/run_summary.hpp"
+#include "runtime/run/figures/run_trace.hpp"
+#include "runtime/run/inputs/command_lines.hpp"
+#include "runtime/run/inputs/run_files.hpp"
+#include "runtime/run/inputs/run_start.hpp"
+#include "runtime/run/maps/map_model.hpp"
 #include "runtime/run/run.hpp"
-#include "runtime/run/run_files.hpp"
-#include "runtime/run/run_start.hpp"
-#include "runtime/run/run_summary.hpp"
-#include "runtime/run/run_trace.hpp"
 
 namespace zonepack {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runtime/run/run_inputs.hpp"
+#include "runtime/run/inputs/run_inputs.hpp"
 
 namespace zonepack {
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "runtime/run/run_trace.hpp"
+#include "runtime/run/figures/run_trace.hpp"
 
 namespace zonepack {
 

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "platform/base/require.hpp"
+#include "runtime/run/inputs/rejected_text.hpp"
 #include "runtime/run/output_check.hpp"
-#include "runtime/run/rejected_text.hpp"
 
 namespace zonepack {
 namespace {

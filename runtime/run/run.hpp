@@ -11,13 +11,13 @@
 #include "runtime/control/cycle.hpp"
 #include "runtime/control/map_switcher.hpp"
 #include "runtime/run/event_log.hpp"
-#include "runtime/run/map_registry.hpp"
-#include "runtime/run/map_version.hpp"
-#include "runtime/run/run_files.hpp"
-#include "runtime/run/run_start.hpp"
+#include "runtime/run/figures/run_summary.hpp"
+#include "runtime/run/figures/run_trace.hpp"
+#include "runtime/run/inputs/run_files.hpp"
+#include "runtime/run/inputs/run_start.hpp"
+#include "runtime/run/maps/map_registry.hpp"
+#include "runtime/run/maps/map_version.hpp"
 #include "runtime/run/run_statistics.hpp"
-#include "runtime/run/run_summary.hpp"
-#include "runtime/run/run_trace.hpp"
 
 namespace zonepack {
 

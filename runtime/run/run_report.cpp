@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "runtime/report/format.hpp"
-#include "runtime/run/run_figures.hpp"
+#include "runtime/run/figures/run_figures.hpp"
 
 namespace zonepack {
 namespace {

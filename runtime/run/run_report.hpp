@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "runtime/report/report.hpp"
-#include "runtime/run/baseline.hpp"
-#include "runtime/run/run_summary.hpp"
-#include "runtime/run/run_trace.hpp"
+#include "runtime/run/figures/baseline.hpp"
+#include "runtime/run/figures/run_summary.hpp"
+#include "runtime/run/figures/run_trace.hpp"
 
 namespace zonepack {
 

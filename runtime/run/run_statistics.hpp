@@ -9,10 +9,10 @@
 #include "runtime/control/cycle.hpp"
 #include "runtime/control/event.hpp"
 #include "runtime/memory/residency.hpp"
+#include "runtime/run/figures/run_summary.hpp"
+#include "runtime/run/figures/run_trace.hpp"
 #include "runtime/run/hold_keeper.hpp"
-#include "runtime/run/run_files.hpp"
-#include "runtime/run/run_summary.hpp"
-#include "runtime/run/run_trace.hpp"
+#include "runtime/run/inputs/run_files.hpp"
 #include "runtime/zones/zone_graph.hpp"
 
 namespace zonepack {

@@ -7,8 +7,8 @@
 
 #include "runtime/control/event.hpp"
 #include "runtime/protocol/messages.hpp"
-#include "runtime/run/line_board.hpp"
-#include "runtime/run/live_status.hpp"
+#include "runtime/run/figures/line_board.hpp"
+#include "runtime/run/figures/live_status.hpp"
 #include "runtime/serve/localizer_board.hpp"
 #include "runtime/serve/served_map.hpp"
 #include "runtime/zones/route.hpp"

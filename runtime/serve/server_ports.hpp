@@ -12,8 +12,8 @@
 #include "runtime/control/command.hpp"
 #include "runtime/control/event.hpp"
 #include "runtime/odometry/pose_filter.hpp"
-#include "runtime/run/line_board.hpp"
-#include "runtime/run/live_status.hpp"
+#include "runtime/run/figures/line_board.hpp"
+#include "runtime/run/figures/live_status.hpp"
 #include "runtime/serve/zone_table.hpp"
 
 namespace zonepack {

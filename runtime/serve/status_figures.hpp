@@ -6,7 +6,7 @@
 #include <string>
 
 #include "runtime/protocol/protocol_generated.h"
-#include "runtime/run/live_status.hpp"
+#include "runtime/run/figures/live_status.hpp"
 #include "runtime/serve/answers.hpp"
 #include "runtime/serve/served_map.hpp"
 

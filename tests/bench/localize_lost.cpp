@@ -37,7 +37,7 @@
 #include "runtime/localize/query/stored_map.hpp"
 #include "runtime/odometry/se2.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
-#include "runtime/run/run_files.hpp"
+#include "runtime/run/inputs/run_files.hpp"
 #include "runtime/settings/settings.hpp"
 
 namespace {

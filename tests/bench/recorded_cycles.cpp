@@ -13,7 +13,7 @@
 #include "runtime/memory/shared_map.hpp"
 #include "runtime/replay/recorded_loader.hpp"
 #include "runtime/replay/recorded_run.hpp"
-#include "runtime/run/run_inputs.hpp"
+#include "runtime/run/inputs/run_inputs.hpp"
 
 using namespace zonepack;
 

@@ -40,44 +40,53 @@ ARROWS = {
 
     "runtime/settings": "platform/base platform/devices platform/files platform/memory runtime/control"
                         " runtime/odometry runtime/pack_format runtime/zones",
-    "runtime/run": "platform/base platform/can platform/devices platform/files platform/memory runtime/control"
-                   " runtime/map runtime/memory runtime/odometry runtime/pack_format runtime/pack_format/file"
-                   " runtime/report runtime/settings runtime/zones",
+    "runtime/run/figures": "platform/base platform/can platform/files platform/memory runtime/control runtime/memory"
+                           " runtime/odometry runtime/pack_format runtime/pack_format/file runtime/report",
+    "runtime/run/inputs": "platform/base platform/can platform/devices platform/files runtime/control runtime/map"
+                          " runtime/odometry runtime/pack_format/file runtime/run/figures runtime/run/maps"
+                          " runtime/settings",
+    "runtime/run/maps": "platform/base runtime/control runtime/map runtime/memory runtime/pack_format/file"
+                        " runtime/zones",
+    "runtime/run": "platform/base platform/files runtime/control runtime/memory runtime/pack_format/file"
+                   " runtime/report runtime/run/figures runtime/run/inputs runtime/run/maps runtime/zones",
     "runtime/recording": "platform/base platform/files runtime/control runtime/odometry runtime/pack_format"
-                         " runtime/pack_format/file runtime/run runtime/zones",
+                         " runtime/pack_format/file runtime/run/inputs runtime/run/maps runtime/zones",
     "runtime/state": "platform/base platform/files platform/process runtime/control runtime/odometry"
                      " runtime/pack_format runtime/pack_format/file runtime/recording",
     "runtime/serve": "platform/base platform/files platform/memory platform/process runtime/control runtime/map"
                      " runtime/memory runtime/odometry runtime/pack_format runtime/pack_format/file runtime/protocol"
-                     " runtime/run runtime/settings runtime/zones",
+                     " runtime/run/figures runtime/settings runtime/zones",
     "runtime/live/bus": "platform/base platform/can platform/files platform/memory platform/process platform/sim"
-                        " runtime/live/cycle runtime/odometry runtime/run runtime/settings",
+                        " runtime/live/cycle runtime/odometry runtime/run/inputs runtime/settings",
     "runtime/live/cycle": "platform/base platform/can platform/memory platform/process runtime/control"
-                          " runtime/live/messages runtime/map runtime/memory runtime/run runtime/settings",
+                          " runtime/live/messages runtime/map runtime/memory runtime/run/figures runtime/settings",
     "runtime/live/gpio": "platform/base platform/devices platform/memory platform/process runtime/control"
-                         " runtime/live/messages runtime/run runtime/settings",
+                         " runtime/live/messages runtime/run/figures runtime/settings",
     "runtime/live/messages": "platform/base platform/can platform/files platform/memory platform/process"
-                             " runtime/control runtime/run",
+                             " runtime/control runtime/run runtime/run/figures",
     "runtime/live": "platform/base platform/can platform/devices platform/files platform/memory platform/process"
                     " runtime/live/bus runtime/live/cycle runtime/live/gpio runtime/live/messages runtime/map"
-                    " runtime/memory runtime/pack_format/file runtime/recording runtime/run runtime/serve"
-                    " runtime/settings runtime/state runtime/zones",
+                    " runtime/memory runtime/pack_format/file runtime/recording runtime/run runtime/run/figures"
+                    " runtime/run/inputs runtime/run/maps runtime/serve runtime/settings runtime/state runtime/zones",
     "runtime/replay": "platform/base platform/can platform/sim runtime/control runtime/map runtime/memory"
-                      " runtime/odometry runtime/pack_format runtime/recording runtime/run runtime/settings",
+                      " runtime/odometry runtime/pack_format runtime/recording runtime/run runtime/run/figures"
+                      " runtime/run/inputs runtime/run/maps runtime/settings",
     "runtime/evaluate": "platform/base platform/can platform/files platform/process runtime/control"
                         " runtime/evaluate/policies runtime/map runtime/memory runtime/pack_format"
                         " runtime/pack_format/file runtime/recording runtime/replay runtime/report runtime/run"
-                        " runtime/settings",
+                        " runtime/run/figures runtime/run/inputs runtime/run/maps runtime/settings",
     "runtime/evaluate/policies": "platform/base runtime/control runtime/memory",
-    "runtime/calibrate": "platform/base platform/can platform/files runtime/odometry runtime/run runtime/settings",
+    "runtime/calibrate": "platform/base platform/can platform/files runtime/odometry runtime/run runtime/run/inputs"
+                         " runtime/settings",
     "runtime/learn": "platform/base platform/can platform/files runtime/map runtime/pack_format/file runtime/recording"
-                     " runtime/replay runtime/run runtime/zones",
+                     " runtime/replay runtime/run runtime/run/figures runtime/run/inputs runtime/run/maps"
+                     " runtime/zones",
     "runtime/listen": "platform/base platform/can platform/files platform/process platform/sim runtime/calibrate"
-                      " runtime/live/bus runtime/live/messages runtime/odometry runtime/run runtime/settings",
+                      " runtime/live/bus runtime/live/messages runtime/odometry runtime/run/inputs runtime/settings",
     "runtime/localize/replay": "platform/base platform/can platform/files platform/process runtime/client"
                                " runtime/localize/camera runtime/localize/check runtime/localize/features"
                                " runtime/localize/lost runtime/localize/query runtime/map runtime/odometry"
-                               " runtime/replay runtime/report runtime/run",
+                               " runtime/replay runtime/report runtime/run runtime/run/figures runtime/run/inputs",
     "runtime/zoned": "platform/base platform/command_line platform/memory platform/process platform/version"
                      " runtime/calibrate runtime/evaluate runtime/learn runtime/listen runtime/live runtime/live/bus"
                      " runtime/pack_format/file runtime/recording runtime/replay runtime/report",
@@ -87,7 +96,7 @@ ARROWS = {
                    " runtime/protocol",
 
     "runtime/localize/camera": "platform/base platform/devices platform/files platform/process"
-                               " runtime/pack_format/file runtime/run",
+                               " runtime/pack_format/file runtime/run/figures",
     "runtime/localize/features": "platform/base platform/process runtime/localize/camera",
     "runtime/localize/solve": "runtime/localize/camera runtime/odometry",
     "runtime/localize/query": "platform/base platform/process runtime/client runtime/localize/camera"
@@ -101,10 +110,10 @@ ARROWS = {
                                 " runtime/localize/solve runtime/map runtime/odometry runtime/report",
     "runtime/localize/run": "platform/base platform/files platform/process runtime/client runtime/localize/camera"
                             " runtime/localize/check runtime/localize/lost runtime/localize/query runtime/odometry"
-                            " runtime/protocol runtime/run runtime/settings",
+                            " runtime/protocol runtime/run runtime/run/figures runtime/settings",
     "runtime/localize/zoneloc": "platform/command_line platform/process platform/version runtime/localize/explain"
                                 " runtime/localize/replay runtime/localize/run runtime/pack_format/file"
-                                " runtime/protocol runtime/report runtime/run",
+                                " runtime/protocol runtime/report runtime/run/inputs",
 
     "packer/record": "",
     "packer/align": "packer/record platform/base",
@@ -139,6 +148,7 @@ ARROWS = {
                        " platform/process runtime/pack_format runtime/pack_format/file runtime/report",
     "packer": "packer/commands packer/record/source_kind.hpp platform/command_line platform/process/signals.hpp"
               " platform/version runtime/pack_format/file",
+
 
 
 }

@@ -9,7 +9,7 @@
 #include "runtime/live/bus/log_feed.hpp"
 #include "runtime/live/bus/script_source.hpp"
 #include "runtime/live/cycle/robot_clock.hpp"
-#include "runtime/run/run_inputs.hpp"
+#include "runtime/run/inputs/run_inputs.hpp"
 
 namespace zonepack {
 namespace {

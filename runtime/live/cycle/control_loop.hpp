@@ -13,8 +13,8 @@
 #include "runtime/control/input_sink.hpp"
 #include "runtime/control/map_switcher.hpp"
 #include "runtime/live/messages/live_notes.hpp"
-#include "runtime/run/histogram.hpp"
-#include "runtime/run/live_status.hpp"
+#include "runtime/run/figures/histogram.hpp"
+#include "runtime/run/figures/live_status.hpp"
 
 namespace zonepack {
 

@@ -10,7 +10,7 @@
 #include "platform/process/realtime.hpp"
 #include "runtime/live/cycle/control_loop.hpp"
 #include "runtime/live/cycle/live_loader.hpp"
-#include "runtime/run/run_summary.hpp"
+#include "runtime/run/figures/run_summary.hpp"
 #include "runtime/settings/settings.hpp"
 
 namespace zonepack {

@@ -13,7 +13,7 @@
 #include "platform/process/realtime.hpp"
 #include "runtime/control/line_edge.hpp"
 #include "runtime/live/gpio/line_requests.hpp"
-#include "runtime/run/line_board.hpp"
+#include "runtime/run/figures/line_board.hpp"
 
 namespace zonepack {
 

@@ -8,7 +8,7 @@
 
 #include "platform/base/failure.hpp"
 #include "runtime/live/gpio/line_requests.hpp"
-#include "runtime/run/line_board.hpp"
+#include "runtime/run/figures/line_board.hpp"
 
 // How outputs and inputs are opened alike. A `Line` holds its `request`, its `row` on the board,
 // the opened `line` (null: it cannot be had) and `retry_ns`, when it is tried again.

@@ -8,7 +8,7 @@
 #include "platform/devices/gpio_line.hpp"
 #include "runtime/live/gpio/input_lines.hpp"
 #include "runtime/live/gpio/output_lines.hpp"
-#include "runtime/run/line_board.hpp"
+#include "runtime/run/figures/line_board.hpp"
 
 namespace zonepack {
 

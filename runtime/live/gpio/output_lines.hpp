@@ -12,9 +12,9 @@
 #include "platform/devices/gpio_line.hpp"
 #include "platform/process/realtime.hpp"
 #include "runtime/live/gpio/line_requests.hpp"
-#include "runtime/run/histogram.hpp"
-#include "runtime/run/line_board.hpp"
-#include "runtime/run/live_status.hpp"
+#include "runtime/run/figures/histogram.hpp"
+#include "runtime/run/figures/line_board.hpp"
+#include "runtime/run/figures/live_status.hpp"
 
 namespace zonepack {
 

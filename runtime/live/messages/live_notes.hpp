@@ -6,7 +6,7 @@
 
 #include "platform/memory/spsc_queue.hpp"
 #include "runtime/control/event.hpp"
-#include "runtime/run/live_status.hpp"
+#include "runtime/run/figures/live_status.hpp"
 #include "runtime/run/run_statistics.hpp"
 
 namespace zonepack {

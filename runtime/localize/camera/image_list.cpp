@@ -12,7 +12,7 @@
 #include "platform/base/counted.hpp"
 #include "platform/base/file_kind.hpp"
 #include "platform/base/utf8.hpp"
-#include "runtime/run/stamp_text.hpp"
+#include "runtime/run/figures/stamp_text.hpp"
 
 namespace zonepack::localize {
 namespace {

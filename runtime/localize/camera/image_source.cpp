@@ -6,7 +6,7 @@
 #include "runtime/localize/camera/folder_source.hpp"
 #include "runtime/localize/camera/socket_source.hpp"
 #include "runtime/localize/camera/video_source.hpp"
-#include "runtime/run/stamp_text.hpp"
+#include "runtime/run/figures/stamp_text.hpp"
 
 namespace zonepack::localize {
 namespace {

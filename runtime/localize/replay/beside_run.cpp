@@ -7,8 +7,8 @@
 #include <fstream>
 #include <string_view>
 
-#include "runtime/run/csv_columns.hpp"
-#include "runtime/run/run_files.hpp"
+#include "runtime/run/figures/csv_columns.hpp"
+#include "runtime/run/inputs/run_files.hpp"
 
 namespace zonepack::localize {
 namespace {

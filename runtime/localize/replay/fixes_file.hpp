@@ -7,7 +7,7 @@
 #include "platform/base/failure.hpp"
 #include "runtime/localize/replay/camera_loop.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/run/command_lines.hpp"
+#include "runtime/run/inputs/command_lines.hpp"
 
 namespace zonepack::localize {
 

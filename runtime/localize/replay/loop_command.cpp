@@ -30,13 +30,13 @@
 #include "runtime/localize/replay/lost_loop.hpp"
 #include "runtime/localize/replay/map_error.hpp"
 #include "runtime/replay/replay.hpp"
-#include "runtime/run/baseline.hpp"
-#include "runtime/run/log_faults.hpp"
-#include "runtime/run/log_match.hpp"
-#include "runtime/run/log_time.hpp"
+#include "runtime/run/figures/baseline.hpp"
+#include "runtime/run/figures/summary_text.hpp"
+#include "runtime/run/inputs/log_faults.hpp"
+#include "runtime/run/inputs/log_match.hpp"
+#include "runtime/run/inputs/log_time.hpp"
 #include "runtime/run/output_check.hpp"
 #include "runtime/run/run_report.hpp"
-#include "runtime/run/summary_text.hpp"
 
 namespace zonepack::localize {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "platform/base/failure.hpp"
 #include "runtime/localize/check/calibration_watch.hpp"
-#include "runtime/run/run_inputs.hpp"
+#include "runtime/run/inputs/run_inputs.hpp"
 
 namespace zonepack::localize {
 

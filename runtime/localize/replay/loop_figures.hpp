@@ -13,9 +13,9 @@
 #include "runtime/localize/query/query_result.hpp"
 #include "runtime/localize/replay/camera_loop.hpp"
 #include "runtime/localize/replay/map_error.hpp"
+#include "runtime/run/figures/run_summary.hpp"
+#include "runtime/run/inputs/run_files.hpp"
 #include "runtime/run/run.hpp"
-#include "runtime/run/run_files.hpp"
-#include "runtime/run/run_summary.hpp"
 
 namespace zonepack::localize {
 

@@ -12,7 +12,7 @@
 
 #include "runtime/odometry/poses_apart.hpp"
 #include "runtime/report/format.hpp"
-#include "runtime/run/run_figures.hpp"
+#include "runtime/run/figures/run_figures.hpp"
 
 namespace zonepack::localize {
 namespace {

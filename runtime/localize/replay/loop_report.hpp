@@ -5,7 +5,7 @@
 #include "runtime/localize/replay/camera_loop.hpp"
 #include "runtime/localize/replay/loop_figures.hpp"
 #include "runtime/report/report.hpp"
-#include "runtime/run/run_files.hpp"
+#include "runtime/run/inputs/run_files.hpp"
 #include "runtime/run/run_report.hpp"
 
 namespace zonepack::localize {

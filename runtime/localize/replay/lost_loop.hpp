@@ -11,7 +11,7 @@
 #include "runtime/localize/features/image_features.hpp"
 #include "runtime/localize/lost/search_driver.hpp"
 #include "runtime/replay/fix_source.hpp"
-#include "runtime/run/command_lines.hpp"
+#include "runtime/run/inputs/command_lines.hpp"
 
 namespace zonepack::localize {
 

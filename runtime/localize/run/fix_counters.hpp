@@ -7,7 +7,7 @@
 
 #include "runtime/localize/query/query_result.hpp"
 #include "runtime/protocol/protocol_generated.h"
-#include "runtime/run/histogram.hpp"
+#include "runtime/run/figures/histogram.hpp"
 
 namespace zonepack::localize {
 

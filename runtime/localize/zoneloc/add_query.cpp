@@ -2,7 +2,7 @@
 #include "runtime/localize/zoneloc/add_query.hpp"
 
 #include "platform/command_line/command_line.hpp"
-#include "runtime/run/run_start.hpp"
+#include "runtime/run/inputs/run_start.hpp"
 
 namespace zonepack::localize {
 

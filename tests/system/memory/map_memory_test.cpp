@@ -8,7 +8,7 @@
 #include "runtime/control/zone_keeper.hpp"
 #include "runtime/map/loader.hpp"
 #include "runtime/memory/arena.hpp"
-#include "runtime/run/map_demand.hpp"
+#include "runtime/run/maps/map_demand.hpp"
 #include "runtime/serve/server.hpp"
 #include "runtime/zones/preload.hpp"
 #include "runtime/zones/tracker.hpp"

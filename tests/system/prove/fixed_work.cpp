@@ -11,7 +11,7 @@
 
 #include "platform/process/clock.hpp"
 #include "platform/process/realtime.hpp"
-#include "runtime/run/histogram.hpp"
+#include "runtime/run/figures/histogram.hpp"
 
 namespace {
 

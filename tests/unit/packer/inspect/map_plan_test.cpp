@@ -7,7 +7,7 @@
 #include "packer/build/manifest_writer.hpp"
 #include "platform/files/atomic_file.hpp"
 #include "runtime/map/catalog.hpp"
-#include "runtime/run/map_demand.hpp"
+#include "runtime/run/maps/map_demand.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace zonepack::packer {

@@ -11,7 +11,7 @@
 #include "platform/base/number_text.hpp"
 #include "platform/can/can_log.hpp"
 #include "runtime/calibrate/wheel_watch.hpp"
-#include "runtime/run/run_files.hpp"
+#include "runtime/run/inputs/run_files.hpp"
 
 namespace zonepack {
 namespace {

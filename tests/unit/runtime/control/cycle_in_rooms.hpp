@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runtime/control/cycle.hpp"
-#include "runtime/run/modelled_loader.hpp"
+#include "runtime/run/maps/modelled_loader.hpp"
 #include "tests/support/allocation_count/allocation_count.hpp"
 #include "tests/support/rooms.hpp"
 #include "tests/support/sample_catalog.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/run/modelled_loader.hpp"
+#include "runtime/run/maps/modelled_loader.hpp"
 
 namespace zonepack {
 namespace {

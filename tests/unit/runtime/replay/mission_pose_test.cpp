@@ -13,7 +13,7 @@
 #include "platform/sim/sim_can_bus.hpp"
 #include "runtime/odometry/pose_filter.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
-#include "runtime/run/run_files.hpp"
+#include "runtime/run/inputs/run_files.hpp"
 #include "runtime/settings/settings.hpp"
 
 namespace zonepack {

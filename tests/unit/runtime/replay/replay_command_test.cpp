@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/odometry/det_math.hpp"
-#include "runtime/run/summary_text.hpp"
+#include "runtime/run/figures/summary_text.hpp"
 
 namespace zonepack {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "runtime/run/run_figures.hpp"
+#include "runtime/run/figures/run_figures.hpp"
 #include "runtime/run/run_statistics.hpp"
 #include "tests/support/xml_check.hpp"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/run/modelled_loader.hpp"
+#include "runtime/run/maps/modelled_loader.hpp"
 #include "tests/support/sample_catalog.hpp"
 
 namespace zonepack {

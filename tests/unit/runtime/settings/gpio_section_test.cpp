@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runtime/run/run_inputs.hpp"
+#include "runtime/run/inputs/run_inputs.hpp"
 
 namespace zonepack {
 namespace {

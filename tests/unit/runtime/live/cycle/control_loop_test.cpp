@@ -9,7 +9,7 @@
 
 #include "platform/process/clock.hpp"
 #include "platform/sim/sim_can_bus.hpp"
-#include "runtime/run/modelled_loader.hpp"
+#include "runtime/run/maps/modelled_loader.hpp"
 #include "tests/support/rooms.hpp"
 #include "tests/support/sample_catalog.hpp"
 
