@@ -234,7 +234,7 @@ void run_tune(const TuneArguments& arguments) {
   require_layers(held.layout, arguments.layers, arguments.folder);
   tune::GivenDrives given =
       tune::read_given_drives(arguments.drives, held.layout, arguments.folder);
-  const std::vector<tune::Drive>& drives = given.drives;
+  const std::vector<tune::DrivenPath>& drives = given.drives;
   std::ostream& text = arguments.json.text();
   double metres = 0;
   std::size_t visits = 0;
@@ -303,7 +303,7 @@ void run_tune(const TuneArguments& arguments) {
   json["load_bytes"] = options.load_bytes;
   json["payload"] = payload_text(payload);
   json["drives"] = ordered_json::array();
-  for (const tune::Drive& drive : drives) {
+  for (const tune::DrivenPath& drive : drives) {
     json["drives"].push_back({{"file", drive.file},
                               {"kind", drive.fixes ? "fixes" : "path"},
                               {"poses", drive.poses.size()},

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "packer/outline/grey_image.hpp"
+#include "packer/outline/plan_picture.hpp"
 
 namespace zonepack::packer {
 namespace {
@@ -39,7 +39,7 @@ class GridFileReader {
     std::filesystem::path image = text("image");
     if (image.is_relative()) image = file_.parent_path() / image;
     map.image_file = image.string();
-    fill(map.image, read_grey_image(map.image_file, kMostServedCells));
+    fill(map.image, read_plan_picture(map.image_file, kMostServedCells));
     return map;
   }
 
@@ -137,7 +137,7 @@ class GridFileReader {
     return occupied < free_ ? Cell::kFree : Cell::kUnknown;
   }
 
-  void fill(MapImage& map, const GreyImage& grey) const {
+  void fill(MapImage& map, const PlanPicture& grey) const {
     map.width = grey.width;
     map.height = grey.height;
     map.cells.reserve(grey.pixels.size());

@@ -16,12 +16,12 @@ namespace {
 constexpr double kMostMetres = 500'000;  // of all drives: 320 MB of places
 constexpr double kMuchOutside = 0.1;     // of a drive's places in no zone, worth a warning
 
-std::vector<Drive> read_drives(const std::vector<std::string>& files, const Layout& layout,
-                               const std::string& folder) {
-  std::vector<Drive> drives;
+std::vector<DrivenPath> read_drives(const std::vector<std::string>& files, const Layout& layout,
+                                    const std::string& folder) {
+  std::vector<DrivenPath> drives;
   double metres = 0;
   for (const std::string& file : files) {
-    Drive drive = read_drive(file);
+    DrivenPath drive = read_driven_path(file);
     for (std::size_t i = 1; i < drive.poses.size(); ++i) {
       metres += distance_m(drive.poses[i - 1].p_map, drive.poses[i].p_map);
     }
@@ -30,7 +30,7 @@ std::vector<Drive> read_drives(const std::vector<std::string>& files, const Layo
                                report::format_fixed(kMostMetres / 1000, 0) +
                                " km up to here; give fewer, or a path in metres");
     }
-    for (const Drive& other : drives) {
+    for (const DrivenPath& other : drives) {
       const bool same =
           std::ranges::equal(other.poses, drive.poses, [](const DrivePose& a, const DrivePose& b) {
             return a.t_s == b.t_s && a.p_map == b.p_map;
@@ -53,12 +53,12 @@ std::vector<Drive> read_drives(const std::vector<std::string>& files, const Layo
 }
 
 // One track a drive; of a single drive, its halves.
-std::vector<Track> tracks_of(const std::vector<Drive>& drives, const std::string& folder,
+std::vector<Track> tracks_of(const std::vector<DrivenPath>& drives, const std::string& folder,
                              const Layout& layout, std::vector<std::string>& warnings) {
   std::vector<PlannedZone> zones;
   for (const TunedZone& zone : layout.zones) zones.push_back(zone.zone);
   std::vector<Track> tracks;
-  for (const Drive& drive : drives) {
+  for (const DrivenPath& drive : drives) {
     Track track = track_of(drive, drive.file);
     locate(track, zones);
     if (track.visits.empty()) {
@@ -81,7 +81,7 @@ std::vector<Track> tracks_of(const std::vector<Drive>& drives, const std::string
     tracks.push_back(std::move(track));
   }
   if (drives.size() > 1) return tracks;
-  const std::vector<Drive> halves = halves_of(drives.front());
+  const std::vector<DrivenPath> halves = halves_of(drives.front());
   tracks.clear();
   for (std::size_t i = 0; i < halves.size(); ++i) {
     tracks.push_back(

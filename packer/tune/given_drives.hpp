@@ -10,7 +10,7 @@
 namespace zonepack::packer::tune {
 
 struct GivenDrives {
-  std::vector<Drive> drives;
+  std::vector<DrivenPath> drives;
   std::vector<Track>
       tracks;  // one a drive, in the zones of the layout; of a single one, its halves
   bool halves = false;

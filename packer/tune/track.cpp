@@ -7,7 +7,7 @@
 
 namespace zonepack::packer::tune {
 
-Track track_of(const Drive& drive, std::string name) {
+Track track_of(const DrivenPath& drive, std::string name) {
   Track track;
   track.name = std::move(name);
   track.seconds = drive.poses.back().t_s - drive.poses.front().t_s;
@@ -33,10 +33,10 @@ Track track_of(const Drive& drive, std::string name) {
   return track;
 }
 
-std::vector<Drive> halves_of(const Drive& drive) {
+std::vector<DrivenPath> halves_of(const DrivenPath& drive) {
   const double middle =
       drive.poses.front().t_s + (drive.poses.back().t_s - drive.poses.front().t_s) / 2;
-  std::vector<Drive> halves(2, Drive{drive.file, drive.fixes, {}, 0});
+  std::vector<DrivenPath> halves(2, DrivenPath{drive.file, drive.fixes, {}, 0});
   for (const DrivePose& pose : drive.poses) {
     halves[pose.t_s < middle || halves[0].poses.empty() ? 0 : 1].poses.push_back(pose);
   }

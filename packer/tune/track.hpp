@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "packer/tune/drive.hpp"
+#include "packer/tune/driven_path.hpp"
 #include "packer/zones/partition.hpp"
 
 // A drive as the zones see it: places a few centimetres apart, and the zones visited.
@@ -36,10 +36,10 @@ struct Track {
 };
 
 // Places along the straight lines between poses; a robot that stands adds none. In no zone yet.
-Track track_of(const Drive& drive, std::string name);
+Track track_of(const DrivenPath& drive, std::string name);
 
 // A drive cut into two, at the middle of its time.
-std::vector<Drive> halves_of(const Drive& drive);
+std::vector<DrivenPath> halves_of(const DrivenPath& drive);
 
 // Says which zone holds each place, and which zones are visited.
 void locate(Track& track, const std::vector<PlannedZone>& zones);

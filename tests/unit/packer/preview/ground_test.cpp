@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "packer/build/map_builder.hpp"
-#include "packer/outline/grey_image.hpp"
+#include "packer/outline/plan_picture.hpp"
 #include "packer/preview/png_file.hpp"
 #include "packer/sources/rtabmap/rtabmap_database.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -97,7 +97,7 @@ TEST(Raster, ShowsATurnedCellWhereItStands) {
   const test_support::TemporaryFolder folder;
   const std::string file = (folder.path() / "raster.png").string();
   std::ofstream(file, std::ios::binary) << raster->png;
-  const GreyImage grey = read_grey_image(file, 10'000);
+  const PlanPicture grey = read_plan_picture(file, 10'000);
   // Its middle is 30.5 and 8.5 cells of 5 cm along the grid's sides from (-1, 2).
   const double x = -1 + std::cos(0.6) * 1.525 - std::sin(0.6) * 0.425;
   const double y = 2 + std::sin(0.6) * 1.525 + std::cos(0.6) * 0.425;

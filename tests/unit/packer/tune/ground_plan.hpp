@@ -51,7 +51,7 @@ struct GroundPlan {
 
   // Along y = 1 through these x, at 1 m/s.
   Track drive(const std::string& name, const std::vector<double>& stops) const {
-    Drive drive{name, false, {}, 0};
+    DrivenPath drive{name, false, {}, 0};
     double t = 0, last = stops.front();
     for (const double x : stops) {
       t += x > last ? x - last : last - x;

@@ -8,7 +8,7 @@
 namespace zonepack::packer::tune {
 namespace {
 
-Drive drive_of(const std::vector<DrivePose>& poses) { return {"d", false, poses, 0}; }
+DrivenPath drive_of(const std::vector<DrivePose>& poses) { return {"d", false, poses, 0}; }
 
 TEST(Track, HasAPlaceEveryFiveCentimetres) {
   const Track track = track_of(drive_of({{0, {0, 0}, 0}, {10, {1, 0}, 1}}), "d");

@@ -24,7 +24,7 @@ Track rounds(const GroundPlan& plan, const std::string& name, double x_m, int ti
 // Through B, A and all of C, then carried back to B, so many times: 60 slots in turn, of which 55
 // hold none until it comes again.
 Track circles(const GroundPlan& plan, const std::string& name, int times) {
-  Drive drive{name, false, {}, 0};
+  DrivenPath drive{name, false, {}, 0};
   for (int i = 0; i < times; ++i) {
     for (int x = -15; x < 40; ++x) {
       drive.poses.push_back({static_cast<double>(drive.poses.size()), {x + 0.5, 1}, 0});

@@ -8,7 +8,7 @@
 
 #include "runtime/odometry/pose_filter.hpp"
 #include "tests/support/allocation_count/allocation_count.hpp"
-#include "tests/unit/runtime/odometry/drive.hpp"
+#include "tests/unit/runtime/odometry/simulated_drive.hpp"
 
 namespace zonepack {
 namespace {
@@ -56,7 +56,7 @@ TEST(PoseFilterInvariants, ItsUncertaintyIsHonest) {
 }
 
 TEST(PoseFilterInvariants, TakesNoMemoryAfterConstruction) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.truth.reserve(4000);
   const testing_support::AllocationCount allocations;
   drive.filter.start_at(0, {});
@@ -76,7 +76,7 @@ TEST(PoseFilterInvariants, GivesTheSameBitsEverywhere) {
   PoseFilterSettings settings;
   settings.gate_chi2 = 16.27;
   settings.speed_filter_s = 0.1;
-  Drive drive(settings);
+  SimulatedDrive drive(settings);
   std::uint64_t hash = 0xCBF29CE484222325u;
   const auto mix = [&](double value) {
     hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001B3u;

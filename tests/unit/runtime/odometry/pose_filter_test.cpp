@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/unit/runtime/odometry/drive.hpp"
+#include "tests/unit/runtime/odometry/simulated_drive.hpp"
 
 namespace zonepack {
 namespace {
@@ -18,14 +18,14 @@ constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 TEST(PoseFilter, KnowsNothingBeforeTheFirstFix) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.steps(10);
   EXPECT_FALSE(drive.filter.estimate(drive.now()).valid);
   EXPECT_TRUE(drive.filter.hypotheses().empty());
 }
 
 TEST(PoseFilter, IsTrustedAfterTwoFixesAgreeThroughOdometry) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.steps(5);
   EXPECT_EQ(drive.correct_now(), Verdict::kHypothesis);
   EXPECT_TRUE(drive.filter.estimate(drive.now()).valid);
@@ -39,7 +39,7 @@ TEST(PoseFilter, IsTrustedAfterTwoFixesAgreeThroughOdometry) {
 }
 
 TEST(PoseFilter, TheSamePlaceFixedTwiceIsNoAgreementWhenTheRobotMoved) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.steps(5);
   const PoseCorrection first = drive.fix(drive.now());
   drive.filter.correct(first, drive.now());
@@ -52,7 +52,7 @@ TEST(PoseFilter, TheSamePlaceFixedTwiceIsNoAgreementWhenTheRobotMoved) {
 }
 
 TEST(PoseFilter, ListsUpToFourHypothesesAndTrustsTheOneThatIsConfirmed) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.steps(5);
   for (int i = 1; i <= 6; ++i) {
     EXPECT_EQ(drive.correct_now(i * 5.0, 0, 0), Verdict::kHypothesis);
@@ -67,7 +67,7 @@ TEST(PoseFilter, ListsUpToFourHypothesesAndTrustsTheOneThatIsConfirmed) {
 
 // A wrong second fix would move the robot's zone, and the next one move it again.
 TEST(PoseFilter, WithoutTrustTheOlderHypothesisStaysCurrentUntilAnotherHasMoreSupport) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.steps(5);
   EXPECT_EQ(drive.correct_now(), Verdict::kHypothesis);
   for (int i = 1; i <= 6; ++i) {  // more than there is room for
@@ -81,7 +81,7 @@ TEST(PoseFilter, WithoutTrustTheOlderHypothesisStaysCurrentUntilAnotherHasMoreSu
 }
 
 TEST(PoseFilter, RefusesWhatNoPoseCanBe) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.steps(5);
   const auto refused = [&](auto change) {
     PoseCorrection fix = drive.fix(drive.now());
@@ -99,7 +99,7 @@ TEST(PoseFilter, RefusesWhatNoPoseCanBe) {
 }
 
 TEST(PoseFilter, AGivenStartIsAGuessThatHoldsUntilFixesAgree) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.filter.start_at(0, {}, 0.1, 0.05);
   drive.steps(50);
   EXPECT_TRUE(drive.filter.estimate(drive.now()).valid);
@@ -119,7 +119,7 @@ TEST(PoseFilter, AGivenStartIsAGuessThatHoldsUntilFixesAgree) {
 }
 
 TEST(PoseFilter, AWrongStartIsOverruledByTwoFixes) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.filter.start_at(0, {10, 10, 2}, 0.1, 0.05);
   drive.steps(50);
   drive.correct_now();
@@ -130,7 +130,7 @@ TEST(PoseFilter, AWrongStartIsOverruledByTwoFixes) {
 }
 
 TEST(PoseFilter, RefusesFixesOutsideTheGate) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   EXPECT_EQ(drive.correct_now(2, 0, 0), Verdict::kOutlier);
   EXPECT_EQ(drive.correct_now(0, 0, 0.5), Verdict::kOutlier);
@@ -140,7 +140,7 @@ TEST(PoseFilter, RefusesFixesOutsideTheGate) {
 }
 
 TEST(PoseFilter, NoFixIsBelievedToBePerfect) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   PoseCorrection fix = drive.fix(drive.now());
   fix.sigma_x_m = fix.sigma_y_m = fix.sigma_yaw_rad = 1e-12;
@@ -151,7 +151,7 @@ TEST(PoseFilter, NoFixIsBelievedToBePerfect) {
 }
 
 TEST(PoseFilter, RefusesWhatIsTooOldFromTheFutureOrNotANumber) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   drive.steps(300);  // 6 s; the history has 5
   EXPECT_EQ(drive.correct(drive.now() - 5500 * kMs), Verdict::kTooOld);
@@ -180,7 +180,7 @@ TEST(PoseFilter, RefusesWhatIsTooOldFromTheFutureOrNotANumber) {
 }
 
 TEST(PoseFilter, ARunOfRefusedFixesThatAgreeMovesThePose) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   // The robot was carried: all fixes are 3 m off, consistently.
   EXPECT_EQ(drive.correct_now(3, 0, 0), Verdict::kOutlier);
@@ -196,7 +196,7 @@ TEST(PoseFilter, ARunOfRefusedFixesThatAgreeMovesThePose) {
 }
 
 TEST(PoseFilter, AfterAMoveFixesOfTheOldPlaceCountNoMore) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   drive.steps(100);
   EXPECT_EQ(drive.correct_now(), Verdict::kUsed);
@@ -207,7 +207,7 @@ TEST(PoseFilter, AfterAMoveFixesOfTheOldPlaceCountNoMore) {
 }
 
 TEST(PoseFilter, RefusedFixesThatDisagreeOrAreInterruptedDoNotMoveThePose) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   for (int i = 0; i < 20; ++i) {
     drive.steps(50);
@@ -224,7 +224,7 @@ TEST(PoseFilter, RefusedFixesThatDisagreeOrAreInterruptedDoNotMoveThePose) {
 
 // Two localizers that contradict each other, each consistent in itself: which is right is unknown.
 TEST(PoseFilter, IsNotTrustedWhileRefusedFixesKeepAgreeingWithEachOther) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   for (int i = 1; i <= 3; ++i) {
     drive.steps(50);
@@ -247,7 +247,7 @@ TEST(PoseFilter, IsNotTrustedWhileRefusedFixesKeepAgreeingWithEachOther) {
 
 // Trusted in the wrong place, every second fix wrong in its own way: good ones still win.
 TEST(PoseFilter, IsNotLockedOutWhileEverySecondFixIsWrong) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.steps(5);
   drive.correct_now(8, 8, 0);
   drive.steps(50);
@@ -264,7 +264,7 @@ TEST(PoseFilter, IsNotLockedOutWhileEverySecondFixIsWrong) {
 }
 
 TEST(PoseFilter, WithoutFixesTheUncertaintyGrowsAndAFixIsTakenBack) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   const double before = position_sigma_m(drive.filter.estimate(drive.now()).covariance);
   drive.steps(3000);
@@ -293,7 +293,7 @@ TEST(PoseFilter, CarriesSidewaysMotionOnToNow) {
 }
 
 TEST(PoseFilter, AResetIsBelievedAtOnceWhereverItLeads) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.steps(5);
   EXPECT_EQ(drive.filter.reset(drive.fix(drive.now()), drive.now()), Verdict::kReset);
   EXPECT_TRUE(drive.filter.estimate(drive.now()).trusted);
@@ -307,7 +307,7 @@ TEST(PoseFilter, AResetIsBelievedAtOnceWhereverItLeads) {
 }
 
 TEST(PoseFilter, AResetActsAtItsStampAndKeepsOdometrySince) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   const std::int64_t contact_ns = drive.now();
   drive.steps(20);  // 0.4 m later
@@ -322,7 +322,7 @@ TEST(PoseFilter, AResetActsAtItsStampAndKeepsOdometrySince) {
 }
 
 TEST(PoseFilter, AfterAResetOtherFixesMeetItsGate) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   drive.filter.reset(drive.fix(drive.now()), drive.now());
   drive.steps(10);

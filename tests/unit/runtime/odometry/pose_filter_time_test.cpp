@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runtime/odometry/pose_filter.hpp"
-#include "tests/unit/runtime/odometry/drive.hpp"
+#include "tests/unit/runtime/odometry/simulated_drive.hpp"
 
 namespace zonepack {
 namespace {
@@ -15,7 +15,7 @@ using TimedVerdict = CorrectionVerdict;
 
 // The same result as if the fix had not been late, bit for bit.
 TEST(PoseFilterTime, ALateFixActsAtItsStamp) {
-  Drive in_time, late;
+  SimulatedDrive in_time, late;
   in_time.trust();
   late.trust();
   const std::int64_t stamp = in_time.now();
@@ -31,7 +31,7 @@ TEST(PoseFilterTime, ALateFixActsAtItsStamp) {
 }
 
 TEST(PoseFilterTime, FixesThatOvertakeEachOtherGiveTheSameResult) {
-  Drive sorted, crossed;
+  SimulatedDrive sorted, crossed;
   sorted.trust();
   crossed.trust();
   const std::int64_t first = sorted.now();
@@ -48,7 +48,7 @@ TEST(PoseFilterTime, FixesThatOvertakeEachOtherGiveTheSameResult) {
 }
 
 TEST(PoseFilterTime, AFixBetweenTwoSamplesIsCarriedAlongTheArc) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   drive.step(0.04, 0.1);
   drive.step(0.04, 0.1);
@@ -66,7 +66,7 @@ TEST(PoseFilterTime, AFixBetweenTwoSamplesIsCarriedAlongTheArc) {
 }
 
 TEST(PoseFilterTime, StaleOdometryGrowsUncertaintyAndLetsTheRobotBeFoundElsewhere) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   for (int i = 0; i < 100; ++i) drive.step(0, 0);
   std::int64_t now = drive.now();
@@ -81,7 +81,7 @@ TEST(PoseFilterTime, StaleOdometryGrowsUncertaintyAndLetsTheRobotBeFoundElsewher
 }
 
 TEST(PoseFilterTime, ARobotThatMovedWhenOdometryWentMissingMayBeFarther) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   for (int i = 0; i < 100; ++i) drive.step(0.02, 0);  // 1 m/s
   const double before = position_sigma_m(drive.filter.estimate(drive.now()).covariance);
@@ -93,7 +93,7 @@ TEST(PoseFilterTime, ARobotThatMovedWhenOdometryWentMissingMayBeFarther) {
 // After a pause wheel positions show how far the robot went in it; fixes from the pause count too.
 TEST(PoseFilterTime, TheMotionOfAPauseIsPutWhereItBelongs) {
   for (const bool with_fix : {false, true}) {
-    Drive drive;
+    SimulatedDrive drive;
     drive.trust();
     OdometryIncrement pause;
     pause.from_ns = drive.now();
@@ -130,7 +130,7 @@ TEST(PoseFilterTime, DoubtFromBeforeTheFirstSampleStays) {
 }
 
 TEST(PoseFilterTime, TheEstimateIsCarriedOnToNow) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   for (int i = 0; i < 200; ++i) drive.step(0.02, 0);
   const Pose2 at_sample = drive.filter.estimate(drive.now()).T_map_base;
@@ -143,7 +143,7 @@ TEST(PoseFilterTime, TheEstimateIsCarriedOnToNow) {
 }
 
 TEST(PoseFilterTime, SurvivesAClockThatWasSetBack) {
-  Drive drive;
+  SimulatedDrive drive;
   drive.trust();
   const Pose2 before = drive.filter.estimate(drive.now()).T_map_base;
   OdometryIncrement increment;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "packer/outline/grey_image.hpp"
+#include "packer/outline/plan_picture.hpp"
 
 #include <png.h>
 
@@ -83,8 +83,8 @@ class PgmReader {
   PgmReader(const std::string& path, ImageFile& file)
       : path_(path), file_(file), bytes_(file.bytes()), text_(bytes_[1] == '2') {}
 
-  GreyImage read(std::size_t most_pixels) {
-    GreyImage image = read_header(most_pixels);
+  PlanPicture read(std::size_t most_pixels) {
+    PlanPicture image = read_header(most_pixels);
     const std::size_t pixels = image.width * image.height;
     const std::size_t bytes_each = most_ > 255 ? 2 : 1;
     if (text_) {
@@ -111,8 +111,8 @@ class PgmReader {
   }
 
  private:
-  GreyImage read_header(std::size_t most_pixels) {
-    GreyImage image;
+  PlanPicture read_header(std::size_t most_pixels) {
+    PlanPicture image;
     image.width = number("width");
     image.height = number("height");
     most_ = number("largest grey");
@@ -180,7 +180,7 @@ std::size_t big_endian(std::string_view bytes) {
   return value;
 }
 
-GreyImage read_png_image(const std::string& path, ImageFile& file, std::size_t most_pixels) {
+PlanPicture read_png_image(const std::string& path, ImageFile& file, std::size_t most_pixels) {
   if (file.bytes().size() < kPngSizeEnds || file.bytes().compare(12, 4, "IHDR") != 0) {
     refuse_image(path, "is no whole PNG file: it does not begin with its size");
   }
@@ -202,7 +202,7 @@ GreyImage read_png_image(const std::string& path, ImageFile& file, std::size_t m
   png.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
   std::vector<std::uint8_t> colours(PNG_IMAGE_SIZE(png));
   check(png_image_finish_read(&png, nullptr, colours.data(), 0, nullptr));
-  GreyImage image{png.width, png.height, {}, {}};
+  PlanPicture image{png.width, png.height, {}, {}};
   const std::size_t pixels = image.width * image.height;
   image.pixels.resize(pixels);
   if (transparent) image.opacity.resize(pixels);
@@ -216,7 +216,7 @@ GreyImage read_png_image(const std::string& path, ImageFile& file, std::size_t m
 
 }  // namespace
 
-GreyImage read_grey_image(const std::string& path, std::size_t most_pixels) {
+PlanPicture read_plan_picture(const std::string& path, std::size_t most_pixels) {
   ImageFile file(path);
   const std::string& bytes = file.bytes();
   if (bytes.starts_with("P5") || bytes.starts_with("P2")) {

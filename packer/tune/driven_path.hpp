@@ -16,7 +16,7 @@ struct DrivePose {
   double z_map_m = 0;
 };
 
-struct Drive {
+struct DrivenPath {
   std::string file;
   bool fixes = false;            // of a localizer; else a path
   std::vector<DrivePose> poses;  // ascending stamps
@@ -29,9 +29,9 @@ struct Drive {
 // remarks, one line of column names is left out. Fixes that are metres off both the one before and
 // the one after, further than a robot goes in the time, are left out.
 // Throws std::runtime_error with file and line for anything else.
-Drive read_drive(const std::string& file);
+DrivenPath read_driven_path(const std::string& file);
 
 // The same of a text; `file` is for messages.
-Drive parse_drive(const std::string& text, const std::string& file);
+DrivenPath parse_driven_path(const std::string& text, const std::string& file);
 
 }  // namespace zonepack::packer::tune

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "packer/tune/drive.hpp"
+#include "packer/tune/driven_path.hpp"
 
 #include <algorithm>
 #include <array>
@@ -78,7 +78,7 @@ bool agree(const DrivePose& a, const DrivePose& b) {
 }
 
 // A fix stays that agrees with the last one kept, or with one of the next two.
-void leave_out_wrong_fixes(Drive& drive) {
+void leave_out_wrong_fixes(DrivenPath& drive) {
   std::vector<DrivePose> kept;
   for (std::size_t i = 0; i < drive.poses.size(); ++i) {
     const DrivePose& pose = drive.poses[i];
@@ -140,9 +140,9 @@ std::vector<Row> rows_of(const std::string& text, const std::string& file) {
 
 }  // namespace
 
-Drive parse_drive(const std::string& text, const std::string& file) {
+DrivenPath parse_driven_path(const std::string& text, const std::string& file) {
   const std::vector<Row> rows = rows_of(text, file);
-  Drive drive{.file = file, .fixes = false, .poses = {}, .left_out = 0};
+  DrivenPath drive{.file = file, .fixes = false, .poses = {}, .left_out = 0};
   const Row& first = rows.front();
   if (!has_rotation(first)) {
     if (!is_fix(first)) {
@@ -186,7 +186,7 @@ Drive parse_drive(const std::string& text, const std::string& file) {
   return drive;
 }
 
-Drive read_drive(const std::string& file) {
+DrivenPath read_driven_path(const std::string& file) {
   std::error_code error;
   if (!fs::exists(file, error)) {
     throw std::runtime_error(file + ": no such file; " + kExpected);
@@ -201,7 +201,7 @@ Drive read_drive(const std::string& file) {
   std::ostringstream text;
   if (in && in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
   if (!in) throw std::runtime_error(file + ": cannot be read: " + std::strerror(errno));
-  return parse_drive(std::move(text).str(), file);
+  return parse_driven_path(std::move(text).str(), file);
 }
 
 }  // namespace zonepack::packer::tune

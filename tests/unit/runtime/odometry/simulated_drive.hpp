@@ -13,8 +13,8 @@ namespace zonepack {
 inline constexpr std::int64_t kMs = 1'000'000;
 
 // A robot that drives in arcs at 50 Hz, its odometry exact, and a filter that follows it.
-struct Drive {
-  explicit Drive(const PoseFilterSettings& settings = {}) : filter(settings) {
+struct SimulatedDrive {
+  explicit SimulatedDrive(const PoseFilterSettings& settings = {}) : filter(settings) {
     truth.push_back({});
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "packer/tune/drive.hpp"
+#include "packer/tune/driven_path.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,15 +11,15 @@ namespace {
 
 std::string refusal(const std::string& text) {
   try {
-    parse_drive(text, "drive.txt");
+    parse_driven_path(text, "drive.txt");
   } catch (const std::runtime_error& error) {
     return error.what();
   }
   return "";
 }
 
-TEST(Drive, IsAPathWhereTheFifthToEighthNumbersAreARotation) {
-  const Drive drive = parse_drive(
+TEST(DrivenPath, IsAPathWhereTheFifthToEighthNumbersAreARotation) {
+  const DrivenPath drive = parse_driven_path(
       "# stamp x y z qx qy qz qw v w\nt x y z qx qy qz qw\n"
       "1718179200.0 -8 -27 0.5 0 0 -0.6 0.8 0.1 0\n1718179200500000000,-7,-27,0.5,0,0,0,1\n",
       "drive.txt");
@@ -30,24 +30,24 @@ TEST(Drive, IsAPathWhereTheFifthToEighthNumbersAreARotation) {
   EXPECT_NEAR(drive.poses[1].t_s, 1718179200.5, 1e-6);  // nanoseconds
 }
 
-TEST(Drive, IsFixesWhereTheSecondNumberIsWhenTheyWereReceived) {
-  const Drive drive = parse_drive(
+TEST(DrivenPath, IsFixesWhereTheSecondNumberIsWhenTheyWereReceived) {
+  const DrivenPath drive = parse_driven_path(
       "100 100.13 1.0 2.0 -0.9 0.03 0.03 0.009\n101 101.14 1.5 2.0 -0.9 0.03 0.03 0.009\n",
       "fixes.txt");
   EXPECT_TRUE(drive.fixes);
   EXPECT_EQ(drive.poses[1].p_map, (Point2{1.5, 2.0}));
 }
 
-TEST(Drive, LeavesOutAFixThatIsMetresOffBothNeighbours) {
+TEST(DrivenPath, LeavesOutAFixThatIsMetresOffBothNeighbours) {
   // From (1, 2) to (5, 2) in a second are 4 m, a robot makes 0.6 + 1.5 at most.
-  const Drive drive = parse_drive(
+  const DrivenPath drive = parse_driven_path(
       "100 100.1 1 2 0\n101 101.1 5 2 0\n102 102.1 1.2 2 0\n103 103.1 1.3 2 0\n", "fixes.txt");
   ASSERT_EQ(drive.poses.size(), 3u);
   EXPECT_EQ(drive.left_out, 1u);
   EXPECT_EQ(drive.poses[1].p_map, (Point2{1.2, 2}));
 }
 
-TEST(Drive, NamesTheLineOfWhatIsNeither) {
+TEST(DrivenPath, NamesTheLineOfWhatIsNeither) {
   EXPECT_NE(refusal("1 2 3\n").find("drive.txt, line 1: is neither a path nor fixes"),
             std::string::npos);
   EXPECT_NE(refusal("(1718179200.0) can0 311#00\n").find("of a CAN log"), std::string::npos);
