@@ -132,8 +132,7 @@ DescribedPlaces FeatureDetector::describe(const GreyImage& image,
   }
   cv_->keypoints.clear();
   for (std::size_t i = 0; i < px.size(); ++i) {
-    // As GFTT gives them: without direction, on the image itself; class_id is the place.
-    cv_->keypoints.emplace_back(px[i].x(), px[i].y(), 3.0F, -1.0F, 0.0F, 0, static_cast<int>(i));
+    cv_->keypoints.push_back(undirected_keypoint(px[i].x(), px[i].y(), static_cast<int>(i)));
   }
   cv_->describer->compute(pixels_of(image), cv_->keypoints, cv_->descriptors);
   out.rows.resize(cv_->keypoints.size() * out.descriptor_bytes);

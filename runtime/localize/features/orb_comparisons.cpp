@@ -17,9 +17,6 @@ constexpr std::size_t kBits = std::size_t{OrbComparisons::kBytes} * 8;
 constexpr std::size_t kAbreast = 16;
 using Abreast [[gnu::vector_size(kAbreast)]] = std::uint8_t;
 
-// As GFTT gives it: without direction, on the image itself.
-cv::KeyPoint keypoint(float x, float y, int number) { return {x, y, 3, -1, 0, 0, number}; }
-
 // The pixels that, bright or dark, set a bit: those nearer to the place that it looks for than to
 // the other one of the pair, as far as smoothing carries them.
 struct Extent {
@@ -63,8 +60,8 @@ bool OrbComparisons::find_pairs(cv::Feature2D& orb, int reach_px) {
           const int column = margin + (x + reach_px) * pitch + reach_px;
           const int row = margin + (y - top) * pitch + reach_px;
           strip.at<std::uint8_t>(row + y, column + x) = bright ? 255 : 0;
-          places.push_back(
-              keypoint(static_cast<float>(column), static_cast<float>(row), number(x, y)));
+          places.push_back(undirected_keypoint(static_cast<float>(column), static_cast<float>(row),
+                                               number(x, y)));
         }
       }
       orb.compute(strip, places, descriptors);
@@ -100,7 +97,8 @@ bool OrbComparisons::agrees_with(cv::Feature2D& orb) {
   }
   std::vector<cv::KeyPoint> places;
   for (int at = edge_px_; at < size - edge_px_; ++at) {
-    places.push_back(keypoint(static_cast<float>(at), static_cast<float>(size - 1 - at), at));
+    places.push_back(
+        undirected_keypoint(static_cast<float>(at), static_cast<float>(size - 1 - at), at));
   }
   cv::Mat descriptors;
   orb.compute(noise, places, descriptors);

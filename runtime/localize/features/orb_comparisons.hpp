@@ -10,6 +10,11 @@
 
 namespace zonepack::localize {
 
+// As GFTT gives it: without direction, on the image itself.
+inline cv::KeyPoint undirected_keypoint(float x_px, float y_px, int number) {
+  return {x_px, y_px, 3, -1, 0, 0, number};
+}
+
 // What an ORB descriptor without direction consists of (Rublee et al., ICCV 2011): a bit for each
 // pair of pixels around a place, set where the first is darker than the second, on an image
 // smoothed by OpenCV's Gaussian of 7 pixels. OpenCV turns its pairs anew for every place that it

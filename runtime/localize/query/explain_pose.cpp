@@ -9,14 +9,14 @@
 
 #include "runtime/localize/query/localizer_state.hpp"
 #include "runtime/localize/query/second_look.hpp"
-#include "runtime/localize/solve/refine.hpp"
 
 namespace zonepack::localize {
 namespace {
 
 constexpr double kInlier_px = 3;
 constexpr double kSecondPass_px = 8, kSecondPassEnd_px = 6;
-constexpr double kSecondPassDistance = 80;  // of 256 bits
+constexpr double kSecondScale_px = 4, kSecondScaleEnd_px = 2;  // of the loss
+constexpr double kSecondPassDistance = 80;                     // of 256 bits
 constexpr std::size_t kSecondPassSignatures = 60;
 constexpr double kVisible_px = 8;
 constexpr double kDistinct_px = 4;
@@ -124,12 +124,6 @@ void Localizer::State::count(const ImageFeatures& image, const Candidates& candi
 // From a pose on the plane to the pose in space, over the points of all candidates.
 void Localizer::State::polish(const ImageFeatures& image, const Candidates& candidates,
                               const Eigen::Isometry3d& start, QueryResult& result) const {
-  PlanePrior plane;
-  plane.floor_z_m = candidates.floor_z_m;
-  RefineOptions refining;
-  refining.start_px = 4 * scale;
-  refining.end_px = 2 * scale;
-  refining.sigma_px = scale;
   const std::span<const Candidate> all = of_second_pass(candidates);
   Refined refined;
   refined.T_map_base = start;
@@ -138,7 +132,8 @@ void Localizer::State::polish(const ImageFeatures& image, const Candidates& cand
   for (const double radius : {kSecondPass_px, kSecondPassEnd_px}) {
     sightings = match_projected(image, all, camera, refined.T_map_base, radius * scale, second);
     if (sightings.size() < 4) break;
-    refined = refine(sightings, camera, refined.T_map_base, plane, refining);
+    refined = refine_on_floor(sightings, candidates, refined.T_map_base, kSecondScale_px,
+                              kSecondScaleEnd_px);
     if (!refined.valid) break;
   }
   count(image, candidates, sightings, refined.T_map_base, result);

@@ -11,6 +11,7 @@
 #include "runtime/localize/query/candidates.hpp"
 #include "runtime/localize/query/localizer.hpp"
 #include "runtime/localize/query/matching.hpp"
+#include "runtime/localize/solve/refine.hpp"
 
 // What the parts of a query share. Near a known pose: locate_near.cpp; without one:
 // locate_anywhere.cpp; what an image says of a pose: explain_pose.cpp.
@@ -54,6 +55,18 @@ struct Localizer::State {
   void weigh_second_look(const ImageFeatures& image, const GreyImage& pixels,
                          const Candidates& candidates, QueryResult& result);
   void judge(const Candidates& candidates, const QueryPrior& prior, QueryResult& result) const;
+  // The pose near `start` that explains the sightings best, on the floor of the candidates. The
+  // scales of the loss are for the usual focal length.
+  Refined refine_on_floor(std::span<const Sighting> sightings, const Candidates& candidates,
+                          const Eigen::Isometry3d& start, double start_px, double end_px) const {
+    PlanePrior plane;
+    plane.floor_z_m = candidates.floor_z_m;
+    RefineOptions refining;
+    refining.start_px = start_px * scale;
+    refining.end_px = end_px * scale;
+    refining.sigma_px = scale;
+    return refine(sightings, camera, start, plane, refining);
+  }
   MatchOptions matching() const {
     MatchOptions out;
     out.binary = detector.settings().binary();

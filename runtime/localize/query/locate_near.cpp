@@ -8,7 +8,6 @@
 #include "runtime/localize/query/localizer_state.hpp"
 #include "runtime/localize/query/place_search.hpp"
 #include "runtime/localize/solve/planar_ransac.hpp"
-#include "runtime/localize/solve/refine.hpp"
 #include "runtime/odometry/se2.hpp"
 
 namespace zonepack::localize {
@@ -19,6 +18,7 @@ constexpr std::size_t kFirstPassSignatures = 12;
 constexpr std::size_t kStarts = 3;
 constexpr double kStartShare = 0.85;
 constexpr double kPlenty = 3;  // times the evidence needed: no other start is looked at
+constexpr double kFirstScale_px = 8, kFirstScaleEnd_px = 3;  // of the loss
 constexpr double kMostTilt_rad = 6 * std::numbers::pi / 180;
 constexpr double kMostLift_m = 0.12;
 // The evidence for a pose: each distinct inlier counts by how alike its descriptors are and how
@@ -115,18 +115,13 @@ void Localizer::State::solve(const ImageFeatures& image, const GreyImage* pixels
     result.reason = Reason::kFewInliers;
     return;
   }
-  PlanePrior plane;
-  plane.floor_z_m = candidates.floor_z_m;
-  RefineOptions refining;
-  refining.start_px = 8 * scale;
-  refining.end_px = 3 * scale;
-  refining.sigma_px = scale;
   std::optional<QueryResult> best;
   for (const PlanarPose& start : planar) {
     if (start.score < kStartShare * planar.front().score) break;
     if (best && best->evidence > kPlenty * kLeastEvidence) break;
     const Eigen::Isometry3d lifted = lift(start.pose, candidates.floor_z_m);
-    const Refined first = refine(sightings, camera, lifted, plane, refining);
+    const Refined first =
+        refine_on_floor(sightings, candidates, lifted, kFirstScale_px, kFirstScaleEnd_px);
     QueryResult here = result;
     polish(image, candidates, first.valid ? first.T_map_base : lifted, here);
     here.evidence -= kChance * here.visible + kOffPrior * off_prior2(prior, here);

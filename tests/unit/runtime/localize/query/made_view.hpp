@@ -8,9 +8,11 @@
 
 #include "runtime/localize/camera/camera_model.hpp"
 #include "runtime/localize/camera/grey_image.hpp"
+#include "runtime/localize/features/feature_detector.hpp"
 #include "runtime/localize/features/image_features.hpp"
 #include "runtime/localize/query/map_features.hpp"
 #include "runtime/localize/solve/sighting.hpp"
+#include "tests/unit/runtime/localize/solve/made_sightings.hpp"
 
 // An image made up, and the map that a camera which took it would make.
 namespace zonepack::localize {
@@ -60,5 +62,15 @@ inline MapFeatures made_signature(const ImageFeatures& features, const CameraMod
   }
   return map;
 }
+
+// The image, its features and the map of them.
+struct MadeView {
+  const CameraModel camera_ = made_camera();
+  const GreyImage view_ = made_view();
+  FeatureDetector detector_{DetectorSettings{}};
+  const ImageFeatures features_ = detector_.detect(view_, camera_);
+  const MapFeatures map_ =
+      made_signature(features_, camera_, detector_.settings().descriptor_bytes());
+};
 
 }  // namespace zonepack::localize

@@ -8,12 +8,11 @@
 
 #include "tests/support/image_changes.hpp"
 #include "tests/unit/runtime/localize/query/made_view.hpp"
-#include "tests/unit/runtime/localize/solve/made_sightings.hpp"
 
 namespace zonepack::localize {
 namespace {
 
-class PlaceSearchTest : public testing::Test {
+class PlaceSearchTest : public testing::Test, protected MadeView {
  protected:
   struct Found {
     std::vector<Sighting> matches;
@@ -34,13 +33,6 @@ class PlaceSearchTest : public testing::Test {
     }
     return out;
   }
-
-  const CameraModel camera_ = made_camera();
-  const GreyImage view_ = made_view();
-  FeatureDetector detector_{DetectorSettings{}};
-  const ImageFeatures features_ = detector_.detect(view_, camera_);
-  const MapFeatures map_ =
-      made_signature(features_, camera_, detector_.settings().descriptor_bytes());
 };
 
 TEST_F(PlaceSearchTest, FindsTheMapNearAPriorThatIsOff) {

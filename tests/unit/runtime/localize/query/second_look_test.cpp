@@ -7,25 +7,17 @@
 
 #include "tests/support/image_changes.hpp"
 #include "tests/unit/runtime/localize/query/made_view.hpp"
-#include "tests/unit/runtime/localize/solve/made_sightings.hpp"
 
 namespace zonepack::localize {
 namespace {
 
-class SecondLookTest : public testing::Test {
+class SecondLookTest : public testing::Test, protected MadeView {
  protected:
   SecondLook look(const GreyImage& image, const Pose2& pose,
                   const std::vector<Sighting>& matched = {}) {
     const Candidate candidates[] = {{&map_, 0}};
     return take_second_look(image, detector_, candidates, camera_, lift(pose, 0), matched);
   }
-
-  const CameraModel camera_ = made_camera();
-  const GreyImage view_ = made_view();
-  FeatureDetector detector_{DetectorSettings{}};
-  const ImageFeatures features_ = detector_.detect(view_, camera_);
-  const MapFeatures map_ =
-      made_signature(features_, camera_, detector_.settings().descriptor_bytes());
 };
 
 TEST_F(SecondLookTest, RecognisesTheMapWhereItIs) {
