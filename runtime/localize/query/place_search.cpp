@@ -191,27 +191,17 @@ class DescribedImage {
   std::vector<std::uint16_t> distances_, least_;
 };
 
-}  // namespace
-
-std::vector<Sighting> find_places(const GreyImage& pixels, FeatureDetector& detector,
+// Of the pixels around what was found, between the places of the grid, those that look most like
+// the points: they become features of the image, and matches.
+std::vector<Sighting> look_closer(const GreyImage& pixels, FeatureDetector& detector,
+                                  const std::vector<DescribedImage::Found>& found,
                                   const Candidates& candidates, const CameraModel& camera,
-                                  const QueryPrior& prior, const MatchOptions& options,
                                   ImageFeatures& image) {
-  ZP_REQUIRE(detector.describes_anywhere());
-  const std::vector<SoughtPoint> points = points_sought(candidates, camera, prior, options);
-  DescribedImage described(pixels, detector, camera);
-  std::vector<DescribedImage::Found> found;
-  for (const SoughtPlace& place : places_sought(points, camera.fx / kUsualFocal_px)) {
-    if (const auto one = described.find(place, candidates)) found.push_back(*one);
-  }
+  const auto reach = static_cast<float>(step_of(pixels) / 2);
   std::vector<Eigen::Vector2f> around;
-  const int reach = step_of(pixels) / 2;
   for (const DescribedImage::Found& one : found) {
-    for (int x = -reach; x <= reach; ++x) {
-      for (int y = -reach; y <= reach; ++y) {
-        around.push_back(one.seen_px +
-                         Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)));
-      }
+    for (float x = -reach; x <= reach; ++x) {
+      for (float y = -reach; y <= reach; ++y) around.push_back(one.seen_px + Eigen::Vector2f(x, y));
     }
   }
   const DescribedPlaces near = detector.describe(pixels, around);
@@ -240,6 +230,24 @@ std::vector<Sighting> find_places(const GreyImage& pixels, FeatureDetector& dete
                    point.signature, point.row});
   }
   return out;
+}
+
+}  // namespace
+
+std::vector<Sighting> find_places(const GreyImage& pixels, FeatureDetector& detector,
+                                  const Candidates& candidates, const CameraModel& camera,
+                                  const QueryPrior& prior, const MatchOptions& options,
+                                  ImageFeatures& image) {
+  ZP_REQUIRE(detector.describes_anywhere());
+  const std::vector<SoughtPoint> points = points_sought(candidates, camera, prior, options);
+  std::vector<DescribedImage::Found> found;
+  {
+    DescribedImage described(pixels, detector, camera);
+    for (const SoughtPlace& place : places_sought(points, camera.fx / kUsualFocal_px)) {
+      if (const auto one = described.find(place, candidates)) found.push_back(*one);
+    }
+  }
+  return look_closer(pixels, detector, found, candidates, camera, image);
 }
 
 }  // namespace zonepack::localize
