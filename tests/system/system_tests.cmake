@@ -53,7 +53,7 @@ if(TARGET zonepack AND TARGET zoned AND TARGET zonectl AND TARGET zoneloc)
   add_test(NAME system/localizer_run
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/localize/run_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR})
-  zonepack_test_program(localize/double_image.cpp zonepack_localize)
+  zonepack_test_program(localize/double_image.cpp zonepack_localizer)
   add_test(NAME system/localizer_replay
            COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/localize/replay_test.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
                    ${PROJECT_SOURCE_DIR} $<TARGET_FILE:double_image>)

@@ -38,7 +38,7 @@ std::string meaning_of(std::string_view reason) {
   return {};
 }
 
-std::string seconds_text(std::int64_t ns) {
+std::string stamp_in_seconds(std::int64_t ns) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2f s", static_cast<double>(ns) / 1e9);
   return text;
@@ -219,7 +219,7 @@ void EventMessages::say(Message message, std::int64_t t_ns) {
     message.text += " (" + counted(left_out_, "line") + " left out before this one)";
     left_out_ = 0;
   }
-  output_.print(message.warning ? message.text : seconds_text(t_ns) + ": " + message.text);
+  output_.print(message.warning ? message.text : stamp_in_seconds(t_ns) + ": " + message.text);
 }
 
 }  // namespace zonepack
