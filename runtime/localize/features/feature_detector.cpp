@@ -113,40 +113,54 @@ ImageFeatures FeatureDetector::detect(const GreyImage& image, const CameraModel&
   return out;
 }
 
-DescribedPlaces FeatureDetector::describe(const GreyImage& image,
-                                          std::span<const Eigen::Vector2f> px) {
-  ZP_REQUIRE(image.whole() && describes_anywhere());
+PlaceDescriber::PlaceDescriber(FeatureDetector& detector, const GreyImage& image)
+    : image_(image), settings_(detector.settings()), cv_(*detector.cv_) {
+  ZP_REQUIRE(image.whole() && detector.describes_anywhere());
+}
+
+PlaceDescriber::~PlaceDescriber() {
+  if (comparisons_ != nullptr) comparisons_->release();
+}
+
+OrbComparisons* PlaceDescriber::prepared() {
+  if (!prepared_) {
+    comparisons_ = cv_.read_comparisons(settings_);
+    if (comparisons_ != nullptr) comparisons_->use(pixels_of(image_));
+    prepared_ = true;
+  }
+  return comparisons_;
+}
+
+DescribedPlaces PlaceDescriber::places(std::span<const Eigen::Vector2f> px) {
   DescribedPlaces out;
   out.descriptor_bytes = settings_.descriptor_bytes();
   out.row_of.assign(px.size(), -1);
-  if (OrbComparisons* comparisons = cv_->read_comparisons(settings_)) {
+  if (const OrbComparisons* comparisons = prepared()) {
     out.rows.resize(px.size() * out.descriptor_bytes);
-    comparisons->use(pixels_of(image));
     std::int32_t row = 0;
     for (std::size_t i = 0; i < px.size(); ++i) {
       std::uint8_t* at = out.rows.data() + static_cast<std::size_t>(row) * out.descriptor_bytes;
       if (comparisons->place(px[i].x(), px[i].y(), at)) out.row_of[i] = row++;
     }
-    comparisons->release();
     return out;
   }
-  cv_->keypoints.clear();
+  cv_.keypoints.clear();
   for (std::size_t i = 0; i < px.size(); ++i) {
-    cv_->keypoints.push_back(undirected_keypoint(px[i].x(), px[i].y(), static_cast<int>(i)));
+    cv_.keypoints.push_back(undirected_keypoint(px[i].x(), px[i].y(), static_cast<int>(i)));
   }
-  cv_->describer->compute(pixels_of(image), cv_->keypoints, cv_->descriptors);
-  out.rows.resize(cv_->keypoints.size() * out.descriptor_bytes);
-  for (std::size_t row = 0; row < cv_->keypoints.size(); ++row) {
-    out.row_of[static_cast<std::size_t>(cv_->keypoints[row].class_id)] =
+  cv_.describer->compute(pixels_of(image_), cv_.keypoints, cv_.descriptors);
+  out.rows.resize(cv_.keypoints.size() * out.descriptor_bytes);
+  for (std::size_t row = 0; row < cv_.keypoints.size(); ++row) {
+    out.row_of[static_cast<std::size_t>(cv_.keypoints[row].class_id)] =
         static_cast<std::int32_t>(row);
     std::memcpy(out.rows.data() + row * out.descriptor_bytes,
-                cv_->descriptors.ptr(static_cast<int>(row)), out.descriptor_bytes);
+                cv_.descriptors.ptr(static_cast<int>(row)), out.descriptor_bytes);
   }
   return out;
 }
 
-DescribedGrid FeatureDetector::describe_grid(const GreyImage& image, int step_px) {
-  ZP_REQUIRE(image.whole() && describes_anywhere() && step_px > 0);
+DescribedGrid PlaceDescriber::grid(int step_px) {
+  ZP_REQUIRE(step_px > 0);
   DescribedGrid out;
   out.descriptor_bytes = settings_.descriptor_bytes();
   out.step_px = step_px;
@@ -154,15 +168,13 @@ DescribedGrid FeatureDetector::describe_grid(const GreyImage& image, int step_px
   const auto places_along = [&](int size) {
     return std::max(0, (size - settings_.edge_px - 1 - out.first_px) / step_px + 1);
   };
-  if (image.width <= 2 * settings_.edge_px || image.height <= 2 * settings_.edge_px) return out;
-  out.columns = places_along(image.width);
-  out.rows = places_along(image.height);
+  if (image_.width <= 2 * settings_.edge_px || image_.height <= 2 * settings_.edge_px) return out;
+  out.columns = places_along(image_.width);
+  out.rows = places_along(image_.height);
   const auto count = static_cast<std::size_t>(out.columns) * static_cast<std::size_t>(out.rows);
   out.descriptors.resize(count * out.descriptor_bytes);
-  if (OrbComparisons* comparisons = cv_->read_comparisons(settings_)) {
-    comparisons->use(pixels_of(image));
+  if (const OrbComparisons* comparisons = prepared()) {
     comparisons->grid(out.first_px, step_px, out.columns, out.rows, out.descriptors.data());
-    comparisons->release();
     return out;
   }
   std::vector<Eigen::Vector2f> px;
@@ -173,7 +185,7 @@ DescribedGrid FeatureDetector::describe_grid(const GreyImage& image, int step_px
                       static_cast<float>(out.first_px + row * step_px));
     }
   }
-  const DescribedPlaces described = describe(image, px);
+  const DescribedPlaces described = places(px);
   for (std::size_t i = 0; i < count; ++i) {
     std::memcpy(out.descriptors.data() + i * out.descriptor_bytes, described.find(i),
                 out.descriptor_bytes);

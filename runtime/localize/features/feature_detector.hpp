@@ -14,6 +14,8 @@
 
 namespace zonepack::localize {
 
+class OrbComparisons;
+
 // What places of an image look like, by their numbers in the list that was asked for.
 struct DescribedPlaces {
   std::uint32_t descriptor_bytes = 0;
@@ -47,16 +49,42 @@ class FeatureDetector {
   // Whether a descriptor is of a place alone: others need the size and direction that the detector
   // found there.
   bool describes_anywhere() const noexcept { return settings_.detector == Detector::kGfttOrb; }
-  // What an image looks like at any places, in its own pixels. Needs describes_anywhere().
-  DescribedPlaces describe(const GreyImage& image, std::span<const Eigen::Vector2f> px);
-  DescribedGrid describe_grid(const GreyImage& image, int step_px);
-
   const DetectorSettings& settings() const noexcept { return settings_; }
 
  private:
+  friend class PlaceDescriber;
   struct OpenCv;
   DetectorSettings settings_;
   std::unique_ptr<OpenCv> cv_;
+};
+
+// Says what an image looks like at any places, in its own pixels. The image is prepared once, when
+// places are asked for first.
+//
+// Threads: as the detector, of which one describer exists at a time.
+// Memory: a byte a pixel of the image.
+class PlaceDescriber {
+ public:
+  // Detector and image outlive it. The image is whole; the detector describes_anywhere().
+  PlaceDescriber(FeatureDetector& detector, const GreyImage& image);
+  ~PlaceDescriber();
+  PlaceDescriber(const PlaceDescriber&) = delete;
+  PlaceDescriber& operator=(const PlaceDescriber&) = delete;
+
+  DescribedPlaces places(std::span<const Eigen::Vector2f> px);
+  DescribedGrid grid(int step_px);
+
+  const GreyImage& image() const noexcept { return image_; }
+  std::uint32_t descriptor_bytes() const noexcept { return settings_.descriptor_bytes(); }
+
+ private:
+  OrbComparisons* prepared();
+
+  const GreyImage& image_;
+  const DetectorSettings& settings_;
+  FeatureDetector::OpenCv& cv_;
+  OrbComparisons* comparisons_ = nullptr;  // null: OpenCV describes
+  bool prepared_ = false;
 };
 
 }  // namespace zonepack::localize

@@ -156,14 +156,13 @@ void Localizer::State::polish(const ImageFeatures& image, const Candidates& cand
                        c.yaw_yaw * worse + kMapSigma_rad * kMapSigma_rad};
 }
 
-void Localizer::State::weigh_second_look(const ImageFeatures& image, const GreyImage& pixels,
+void Localizer::State::weigh_second_look(const ImageFeatures& image, PlaceDescriber& describer,
                                          const Candidates& candidates, QueryResult& result) {
   const std::span<const Candidate> all = of_second_pass(candidates);
   const std::vector<Sighting> matched =
       match_projected(image, all, camera, result.T_map_base, kSecondPassEnd_px * scale,
                       second_matching(matching()));
-  const SecondLook look =
-      take_second_look(pixels, detector, all, camera, result.T_map_base, matched);
+  const SecondLook look = take_second_look(describer, all, camera, result.T_map_base, matched);
   result.looked_at = look.points;
   result.recognised = look.recognised;
   result.evidence += kRecognised * (look.recognised - kRecognisedByChance * look.points);

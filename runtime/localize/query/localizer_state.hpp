@@ -45,14 +45,15 @@ struct Localizer::State {
                    QueryResult& result);
   void locate_anywhere(const ImageFeatures& image, std::span<const MapFeatures* const> map,
                        QueryResult& result);
-  void solve(const ImageFeatures& image, const GreyImage* pixels, const Candidates& candidates,
+  // `describer`: of the image, for a second look; may be null.
+  void solve(const ImageFeatures& image, PlaceDescriber* describer, const Candidates& candidates,
              const std::vector<Sighting>& sightings, const QueryPrior& prior, QueryResult& result);
   void polish(const ImageFeatures& image, const Candidates& candidates,
               const Eigen::Isometry3d& start, QueryResult& result) const;
   void count(const ImageFeatures& image, const Candidates& candidates,
              std::vector<Sighting>& sightings, const Eigen::Isometry3d& T_map_base,
              QueryResult& result) const;
-  void weigh_second_look(const ImageFeatures& image, const GreyImage& pixels,
+  void weigh_second_look(const ImageFeatures& image, PlaceDescriber& describer,
                          const Candidates& candidates, QueryResult& result);
   void judge(const Candidates& candidates, const QueryPrior& prior, QueryResult& result) const;
   // The pose near `start` that explains the sightings best, on the floor of the candidates. The

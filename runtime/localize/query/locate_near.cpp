@@ -66,24 +66,25 @@ void Localizer::State::locate_near(const ImageFeatures& image, const GreyImage* 
     result.reason = candidates.near == 0 ? Reason::kNoSignature : Reason::kNotInView;
     return;
   }
-  if (!detector.describes_anywhere()) pixels = nullptr;
+  std::optional<PlaceDescriber> describer;
+  if (pixels != nullptr && detector.describes_anywhere()) describer.emplace(detector, *pixels);
   std::vector<Sighting> sightings =
       match_in_windows(image, candidates.best, camera, prior, candidates.floor_z_m, matching());
   clock.end(Stage::kMatch);
   const QueryResult before = result;
-  solve(image, pixels, candidates, sightings, prior, result);
-  if (result.accepted || pixels == nullptr) return;
+  solve(image, describer ? &*describer : nullptr, candidates, sightings, prior, result);
+  if (result.accepted || !describer) return;
   StageClock again(result);
   ImageFeatures more = image;
   const std::vector<Sighting> found =
-      find_places(*pixels, detector, candidates, camera, prior, matching(), more);
+      find_places(*describer, candidates, camera, prior, matching(), more);
   sightings.insert(sightings.end(), found.begin(), found.end());
   again.end(Stage::kMatch);
   QueryResult second = before;
   second.places_found = static_cast<int>(found.size());
   second.cpu_ns = result.cpu_ns;
   second.cpu_total_ns = result.cpu_total_ns;
-  solve(more, pixels, candidates, sightings, prior, second);
+  solve(more, &*describer, candidates, sightings, prior, second);
   if (second.accepted || second.evidence > result.evidence) {
     result = std::move(second);
   } else {
@@ -94,7 +95,7 @@ void Localizer::State::locate_near(const ImageFeatures& image, const GreyImage* 
 }
 
 // From matches to the best pose, and what is thought of it.
-void Localizer::State::solve(const ImageFeatures& image, const GreyImage* pixels,
+void Localizer::State::solve(const ImageFeatures& image, PlaceDescriber* describer,
                              const Candidates& candidates, const std::vector<Sighting>& sightings,
                              const QueryPrior& prior, QueryResult& result) {
   StageClock clock(result);
@@ -128,9 +129,9 @@ void Localizer::State::solve(const ImageFeatures& image, const GreyImage* pixels
     if (!best || here.evidence > best->evidence) best = std::move(here);
   }
   result = std::move(*best);
-  if (pixels != nullptr && result.found && result.distinct >= options.needed &&
+  if (describer != nullptr && result.found && result.distinct >= options.needed &&
       result.evidence < kBeyondDoubt) {
-    weigh_second_look(image, *pixels, candidates, result);
+    weigh_second_look(image, *describer, candidates, result);
   }
   judge(candidates, prior, result);
   clock.end(Stage::kRefine);

@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "platform/base/require.hpp"
 #include "runtime/localize/features/hamming.hpp"
 #include "runtime/localize/query/search_windows.hpp"
 
@@ -83,9 +82,9 @@ int step_of(const GreyImage& pixels) {
 // The image at every fourth pixel, row by row, and where in it a point is.
 class DescribedImage {
  public:
-  DescribedImage(const GreyImage& pixels, FeatureDetector& detector, const CameraModel& camera)
+  DescribedImage(PlaceDescriber& describer, const CameraModel& camera)
       : beside2_(static_cast<float>(std::pow(kBeside_px * camera.fx / kUsualFocal_px, 2))),
-        grid_(detector.describe_grid(pixels, step_of(pixels))) {
+        grid_(describer.grid(step_of(describer.image()))) {
     for (int row = 0; row < grid_.rows; ++row) {
       Row line{static_cast<std::uint32_t>(px_.size()), 0, 1e9F, -1e9F};
       for (int column = 0; column < grid_.columns; ++column) {
@@ -157,10 +156,14 @@ class DescribedImage {
     runs_.clear();
     for (const Row& row : rows_) {
       if (row.most_y < from.y() || row.least_y > to.y()) continue;
-      std::uint32_t first = row.first, end = row.end;
-      while (first < end && px_[first].x() < from.x()) ++first;
-      while (first < end && px_[end - 1].x() > to.x()) --end;
-      if (first < end) runs_.push_back({first, end});
+      const auto begin = px_.begin() + row.first, end = px_.begin() + row.end;
+      const auto first = std::partition_point(
+          begin, end, [&](const Eigen::Vector2f& px) { return px.x() < from.x(); });
+      const auto last = std::partition_point(
+          first, end, [&](const Eigen::Vector2f& px) { return px.x() <= to.x(); });
+      if (first == last) continue;
+      runs_.push_back({static_cast<std::uint32_t>(first - px_.begin()),
+                       static_cast<std::uint32_t>(last - px_.begin())});
     }
   }
 
@@ -193,18 +196,18 @@ class DescribedImage {
 
 // Of the pixels around what was found, between the places of the grid, those that look most like
 // the points: they become features of the image, and matches.
-std::vector<Sighting> look_closer(const GreyImage& pixels, FeatureDetector& detector,
+std::vector<Sighting> look_closer(PlaceDescriber& describer,
                                   const std::vector<DescribedImage::Found>& found,
                                   const Candidates& candidates, const CameraModel& camera,
                                   ImageFeatures& image) {
-  const auto reach = static_cast<float>(step_of(pixels) / 2);
+  const auto reach = static_cast<float>(step_of(describer.image()) / 2);
   std::vector<Eigen::Vector2f> around;
   for (const DescribedImage::Found& one : found) {
     for (float x = -reach; x <= reach; ++x) {
       for (float y = -reach; y <= reach; ++y) around.push_back(one.seen_px + Eigen::Vector2f(x, y));
     }
   }
-  const DescribedPlaces near = detector.describe(pixels, around);
+  const DescribedPlaces near = describer.places(around);
   const std::size_t each = around.size() / std::max<std::size_t>(1, found.size());
   const std::size_t bytes = near.descriptor_bytes;
   std::vector<Sighting> out;
@@ -234,20 +237,18 @@ std::vector<Sighting> look_closer(const GreyImage& pixels, FeatureDetector& dete
 
 }  // namespace
 
-std::vector<Sighting> find_places(const GreyImage& pixels, FeatureDetector& detector,
-                                  const Candidates& candidates, const CameraModel& camera,
-                                  const QueryPrior& prior, const MatchOptions& options,
-                                  ImageFeatures& image) {
-  ZP_REQUIRE(detector.describes_anywhere());
+std::vector<Sighting> find_places(PlaceDescriber& describer, const Candidates& candidates,
+                                  const CameraModel& camera, const QueryPrior& prior,
+                                  const MatchOptions& options, ImageFeatures& image) {
   const std::vector<SoughtPoint> points = points_sought(candidates, camera, prior, options);
   std::vector<DescribedImage::Found> found;
   {
-    DescribedImage described(pixels, detector, camera);
+    DescribedImage described(describer, camera);
     for (const SoughtPlace& place : places_sought(points, camera.fx / kUsualFocal_px)) {
       if (const auto one = described.find(place, candidates)) found.push_back(*one);
     }
   }
-  return look_closer(pixels, detector, found, candidates, camera, image);
+  return look_closer(describer, found, candidates, camera, image);
 }
 
 }  // namespace zonepack::localize

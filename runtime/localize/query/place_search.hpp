@@ -21,10 +21,9 @@ namespace zonepack::localize {
 // those first that were seen from about where the camera is. Some 5 to 10 ms.
 //
 // Appends what it found to the features of `image`, which are no longer sorted, and gives a match
-// for each, sorted by feature. `pixels` is whole; `detector` describes anywhere.
-std::vector<Sighting> find_places(const GreyImage& pixels, FeatureDetector& detector,
-                                  const Candidates& candidates, const CameraModel& camera,
-                                  const QueryPrior& prior, const MatchOptions& options,
-                                  ImageFeatures& image);
+// for each, sorted by feature.
+std::vector<Sighting> find_places(PlaceDescriber& describer, const Candidates& candidates,
+                                  const CameraModel& camera, const QueryPrior& prior,
+                                  const MatchOptions& options, ImageFeatures& image);
 
 }  // namespace zonepack::localize

@@ -8,7 +8,6 @@
 #include <optional>
 #include <vector>
 
-#include "platform/base/require.hpp"
 #include "runtime/localize/features/hamming.hpp"
 
 namespace zonepack::localize {
@@ -114,11 +113,9 @@ std::optional<int> least_distance(const Place& place, const DescribedPlaces& des
 
 }  // namespace
 
-SecondLook take_second_look(const GreyImage& image, FeatureDetector& detector,
-                            std::span<const Candidate> candidates, const CameraModel& camera,
-                            const Eigen::Isometry3d& T_map_base,
+SecondLook take_second_look(PlaceDescriber& describer, std::span<const Candidate> candidates,
+                            const CameraModel& camera, const Eigen::Isometry3d& T_map_base,
                             std::span<const Sighting> matched) {
-  ZP_REQUIRE(detector.describes_anywhere());
   const double scale = camera.fx / kUsualFocal_px;
   const std::vector<Place> places =
       places_of(points_in_view(candidates, camera, T_map_base), matched, scale);
@@ -134,8 +131,8 @@ SecondLook take_second_look(const GreyImage& image, FeatureDetector& detector,
       }
     }
   }
-  const DescribedPlaces described = detector.describe(image, looks);
-  const std::uint32_t bytes = detector.settings().descriptor_bytes();
+  const DescribedPlaces described = describer.places(looks);
+  const std::uint32_t bytes = describer.descriptor_bytes();
   SecondLook out;
   for (std::size_t p = 0; p < places.size(); ++p) {
     std::vector<int> nearest;  // distance at each place that is inside the image, this one first

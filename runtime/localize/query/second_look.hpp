@@ -25,8 +25,8 @@ struct SecondLook {
 // seen from about where the camera is. Some 4 ms, most of them OpenCV's.
 //
 // `image` is whole; `detector` describes anywhere.
-SecondLook take_second_look(const GreyImage& image, FeatureDetector& detector,
-                            std::span<const Candidate> candidates, const CameraModel& camera,
-                            const Eigen::Isometry3d& T_map_base, std::span<const Sighting> matched);
+SecondLook take_second_look(PlaceDescriber& describer, std::span<const Candidate> candidates,
+                            const CameraModel& camera, const Eigen::Isometry3d& T_map_base,
+                            std::span<const Sighting> matched);
 
 }  // namespace zonepack::localize

@@ -29,7 +29,7 @@ TEST_P(DescribingPlaces, GivesTheFeaturesOfTheDetectorWhereItFoundThem) {
   camera.height = view.height;
   const ImageFeatures features = detector.detect(view, camera);
   ASSERT_GT(features.size(), 300U);
-  const DescribedPlaces places = detector.describe(view, features.seen_px);
+  const DescribedPlaces places = PlaceDescriber(detector, view).places(features.seen_px);
   for (std::size_t i = 0; i < features.size(); ++i) {
     ASSERT_NE(places.find(i), nullptr);
     EXPECT_TRUE(std::equal(places.find(i), places.find(i) + places.descriptor_bytes,
@@ -41,7 +41,7 @@ TEST_P(DescribingPlaces, GivesTheFeaturesOfTheDetectorWhereItFoundThem) {
 TEST_P(DescribingPlaces, GivesNothingNearTheBorder) {
   FeatureDetector detector(settings());
   const std::vector<Eigen::Vector2f> px{{3, 200}, {320, 477}, {320, 240}};
-  const DescribedPlaces places = detector.describe(made_view(), px);
+  const DescribedPlaces places = PlaceDescriber(detector, made_view()).places(px);
   EXPECT_EQ(places.find(0), nullptr);
   EXPECT_EQ(places.find(1), nullptr);
   EXPECT_NE(places.find(2), nullptr);
@@ -50,7 +50,7 @@ TEST_P(DescribingPlaces, GivesNothingNearTheBorder) {
 TEST_P(DescribingPlaces, GivesAGridAsItsPlaces) {
   FeatureDetector detector(settings());
   const GreyImage view = made_view();
-  const DescribedGrid grid = detector.describe_grid(view, 5);
+  const DescribedGrid grid = PlaceDescriber(detector, view).grid(5);
   EXPECT_EQ(grid.first_px, 20);  // the first multiple of 5 that is 19 px inside
   EXPECT_EQ(grid.columns, 121);
   EXPECT_EQ(grid.rows, 89);
@@ -61,7 +61,7 @@ TEST_P(DescribingPlaces, GivesAGridAsItsPlaces) {
                       static_cast<float>(grid.first_px + row * grid.step_px));
     }
   }
-  const DescribedPlaces places = detector.describe(view, px);
+  const DescribedPlaces places = PlaceDescriber(detector, view).places(px);
   for (std::size_t i = 0; i < px.size(); ++i) {
     ASSERT_NE(places.find(i), nullptr);
     ASSERT_TRUE(std::equal(places.find(i), places.find(i) + places.descriptor_bytes,
@@ -75,7 +75,7 @@ TEST_P(DescribingPlaces, GivesAnEmptyGridOfAnImageThatIsAllBorder) {
   small.width = 38;
   small.height = 300;
   small.pixels.assign(38 * 300, 7);
-  EXPECT_TRUE(detector.describe_grid(small, 4).descriptors.empty());
+  EXPECT_TRUE(PlaceDescriber(detector, small).grid(4).descriptors.empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(ByOurselvesAndOpenCv, DescribingPlaces, testing::Values(2, 3));

@@ -24,8 +24,9 @@ class PlaceSearchTest : public testing::Test, protected MadeView {
     candidates.best = {{&map_, 0}};
     Found out;
     out.image = detector_.detect(image, camera_);
-    out.matches = find_places(image, detector_, candidates, camera_,
-                              {prior, {0.01, 0, 0, 0.01, 0, 0.001}}, MatchOptions{}, out.image);
+    PlaceDescriber describer(detector_, image);
+    out.matches = find_places(describer, candidates, camera_, {prior, {0.01, 0, 0, 0.01, 0, 0.001}},
+                              MatchOptions{}, out.image);
     for (const Sighting& one : out.matches) {
       const MapPoint& point = map_.points[one.row];
       const Eigen::Vector2d off = one.px - Eigen::Vector2d(point.x_px, point.y_px);
@@ -84,8 +85,9 @@ TEST_F(PlaceSearchTest, FindsItInALargeImageAsWell) {
   const MapFeatures map = made_signature(image, camera, detector_.settings().descriptor_bytes());
   Candidates candidates;
   candidates.best = {{&map, 0}};
+  PlaceDescriber describer(detector_, large);
   const std::vector<Sighting> matches =
-      find_places(large, detector_, candidates, camera, {kPlace, {0.001, 0, 0, 0.001, 0, 1e-5}},
+      find_places(describer, candidates, camera, {kPlace, {0.001, 0, 0, 0.001, 0, 1e-5}},
                   MatchOptions{}, image);
   int right = 0;
   for (const Sighting& one : matches) {

@@ -16,7 +16,8 @@ class SecondLookTest : public testing::Test, protected MadeView {
   SecondLook look(const GreyImage& image, const Pose2& pose,
                   const std::vector<Sighting>& matched = {}) {
     const Candidate candidates[] = {{&map_, 0}};
-    return take_second_look(image, detector_, candidates, camera_, lift(pose, 0), matched);
+    PlaceDescriber describer(detector_, image);
+    return take_second_look(describer, candidates, camera_, lift(pose, 0), matched);
   }
 };
 
