@@ -69,11 +69,11 @@ Outcome<TimedCommand> parse(const std::string& line,
 }  // namespace
 
 std::string command_line(std::int64_t received_ns, const Command& command, std::string_view zone) {
-  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  constexpr std::int64_t kNsInSecond = 1'000'000'000;
   std::array<char, 40> stamp{};
   std::snprintf(stamp.data(), stamp.size(), "%lld.%09lld",
-                static_cast<long long>(received_ns / kSecond_ns),
-                static_cast<long long>(received_ns % kSecond_ns));
+                static_cast<long long>(received_ns / kNsInSecond),
+                static_cast<long long>(received_ns % kNsInSecond));
   std::string line = std::string(kMark) + stamp.data() + ' ' + to_string(command.kind);
   if (!zone.empty()) line.append(1, ' ').append(zone);
   return line + '\n';
