@@ -34,7 +34,7 @@ class FeatureBandsTest : public testing::Test, protected MadeView {
 
 TEST_F(FeatureBandsTest, GivesEachFeatureOfAWindowWithItsOwnDistance) {
   std::mt19937 random(3);
-  const auto some = [&](int most) { return static_cast<float>(random() % most); };
+  const auto some = [&](unsigned most) { return static_cast<float>(random() % most); };
   for (int k = 0; k < 200; ++k) {
     const SearchWindows::Window window{{some(700) - 30, some(540) - 30}, {some(300), some(200)}};
     std::map<std::uint32_t, std::uint16_t> expected;
