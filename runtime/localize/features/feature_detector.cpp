@@ -122,7 +122,7 @@ PlaceDescriber::~PlaceDescriber() {
   if (comparisons_ != nullptr) comparisons_->release();
 }
 
-OrbComparisons* PlaceDescriber::prepared() {
+const OrbComparisons* PlaceDescriber::prepared() {
   if (!prepared_) {
     comparisons_ = cv_.read_comparisons(settings_);
     if (comparisons_ != nullptr) comparisons_->use(pixels_of(image_));

@@ -49,6 +49,7 @@ class FeatureDetector {
   // Whether a descriptor is of a place alone: others need the size and direction that the detector
   // found there.
   bool describes_anywhere() const noexcept { return settings_.detector == Detector::kGfttOrb; }
+
   const DetectorSettings& settings() const noexcept { return settings_; }
 
  private:
@@ -78,12 +79,13 @@ class PlaceDescriber {
   std::uint32_t descriptor_bytes() const noexcept { return settings_.descriptor_bytes(); }
 
  private:
-  OrbComparisons* prepared();
+  // Null: OpenCV describes.
+  const OrbComparisons* prepared();
 
   const GreyImage& image_;
   const DetectorSettings& settings_;
   FeatureDetector::OpenCv& cv_;
-  OrbComparisons* comparisons_ = nullptr;  // null: OpenCV describes
+  OrbComparisons* comparisons_ = nullptr;
   bool prepared_ = false;
 };
 

@@ -22,9 +22,9 @@ struct SecondLook {
 // recognised if it looks more like what is there than like anything around it, by 20 of 256 bits:
 // blank walls and covered parts of the view are never recognised, a patterned floor is now and then
 // where it is not. At most 60 points, of the 12 candidates that come first, those first that were
-// seen from about where the camera is. Some 4 ms, most of them OpenCV's.
+// seen from about where the camera is. Some 4 million instructions.
 //
-// `image` is whole; `detector` describes anywhere.
+// `describer` is of the image.
 SecondLook take_second_look(PlaceDescriber& describer, std::span<const Candidate> candidates,
                             const CameraModel& camera, const Eigen::Isometry3d& T_map_base,
                             std::span<const Sighting> matched);
