@@ -17,12 +17,10 @@
 #include "packer/commands/options.hpp"
 #include "packer/commands/report.hpp"
 #include "packer/commands/source_options.hpp"
+#include "packer/commands/suggest_ground.hpp"
 #include "packer/console/output_path.hpp"
 #include "packer/console/words.hpp"
-#include "packer/outline/map_drawing.hpp"
-#include "packer/outline/map_server.hpp"
 #include "packer/preview/zones_page.hpp"
-#include "packer/sources/open_source.hpp"
 #include "packer/suggest/suggest.hpp"
 #include "packer/zones/orphans.hpp"
 #include "packer/zones/zone_text.hpp"
@@ -37,9 +35,6 @@ namespace zonepack::packer {
 namespace {
 
 using nlohmann::ordered_json;
-using suggest::FreeSpace;
-
-constexpr double kMostGap_m = 10;  // along a path; farther apart are two signatures of two paths
 
 struct Rule {
   std::string name;  // basins, grid, path, count
@@ -60,103 +55,6 @@ std::optional<Rule> rule_of(const std::string& method) {
   if (!(rule.size >= (metres ? 0.5 : 1) && rule.size <= 1e6)) return std::nullopt;
   if (!metres && rule.size != std::floor(rule.size)) return std::nullopt;
   return rule;
-}
-
-// What the zones are drawn around.
-struct Ground {
-  MapDrawing drawing;
-  std::vector<SignaturePlace> places;  // of a database
-  std::vector<std::int32_t> sessions;  // parallel
-};
-
-void read_signatures(const MapOutline& outline, Ground& ground) {
-  for (const NodeOutline& node : outline.nodes) {
-    if (!node.pose) continue;
-    const Transform& T = *node.pose;
-    ground.places.push_back({node.id, {T[3], T[7]}, T[11]});
-    ground.sessions.push_back(node.map_id);
-  }
-}
-
-Ground read_ground(const SuggestZonesOptions& options) {
-  Ground ground;
-  if (!options.grid.empty()) {
-    ground.drawing = drawing_of(read_grid_file(options.grid));
-  }
-  if (options.source) {
-    const std::unique_ptr<MapSource> source = open_source(*options.source);
-    require_signatures(source->outline(), options.source->name());
-    if (options.grid.empty()) ground.drawing = drawing_of(*source, options.source->slice);
-    if (ground.drawing.image.cells.empty()) {
-      throw std::runtime_error(
-          options.source->name() + ": " + ground.drawing.missing +
-          "; there is no floor plan to draw zones on: add a grid in the same frame with --grid "
-          "map.yaml");
-    }
-    read_signatures(source->outline(), ground);
-    source->require_unchanged();
-  }
-  return ground;
-}
-
-// With a margin of one cell that is not free.
-FreeSpace free_space_of(const MapImage& image) {
-  if (image.width == 0 || image.height == 0 || image.width > kMostServedCells / image.height) {
-    throw std::runtime_error("the floor plan has " + std::to_string(image.width) + " x " +
-                             std::to_string(image.height) + " cells, at most " +
-                             std::to_string(kMostServedCells) + " are searched for rooms");
-  }
-  FreeSpace space;
-  space.columns = static_cast<std::int32_t>(image.width) + 2;
-  space.rows = static_cast<std::int32_t>(image.height) + 2;
-  space.cell_m = image.resolution_m;
-  space.free.resize(static_cast<std::size_t>(space.columns) * static_cast<std::size_t>(space.rows));
-  for (std::size_t row = 0; row < image.height; ++row) {
-    for (std::size_t column = 0; column < image.width; ++column) {
-      const auto to = (row + 1) * static_cast<std::size_t>(space.columns) + column + 1;
-      space.free[to] = image.at(column, row) == Cell::kFree ? 1 : 0;
-    }
-  }
-  return space;
-}
-
-suggest::GridPlace place_of(const Ground& ground) {
-  const MapImage& image = ground.drawing.image;
-  suggest::GridPlace place;
-  if (ground.drawing.yaw_rad != 0) {
-    place.cos = std::cos(ground.drawing.yaw_rad);
-    place.sin = std::sin(ground.drawing.yaw_rad);
-  }
-  const double cell = image.resolution_m;  // of the margin
-  place.corner = {image.x_min_m - (place.cos * cell - place.sin * cell),
-                  image.y_min_m - (place.sin * cell + place.cos * cell)};
-  return place;
-}
-
-// The signatures by id, cut into stretches of so many metres or signatures.
-std::vector<suggest::PathPlace> path_of(const Ground& ground, const FreeSpace& space,
-                                        const suggest::GridPlace& place, const Rule& rule) {
-  std::vector<suggest::PathPlace> path;
-  std::int32_t stretch = 0;
-  double metres = 0, count = 0;
-  for (std::size_t i = 0; i < ground.places.size(); ++i) {
-    const Point2 p = ground.places[i].p_map;
-    const double step = i == 0 ? 0 : distance_m(p, ground.places[i - 1].p_map);
-    const bool jump = i > 0 && (ground.sessions[i] != ground.sessions[i - 1] || step > kMostGap_m);
-    if (!jump) metres += step;
-    if (jump || (rule.name == "path" ? metres >= rule.size : count >= rule.size)) {
-      ++stretch;
-      metres = count = 0;
-    }
-    ++count;
-    const double dx = p.x_m - place.corner.x_m, dy = p.y_m - place.corner.y_m;
-    const double column = std::floor((place.cos * dx + place.sin * dy) / space.cell_m);
-    const double row = std::floor((place.cos * dy - place.sin * dx) / space.cell_m);
-    if (!(column >= 1 && row >= 1 && column < space.columns - 1 && row < space.rows - 1)) continue;
-    path.push_back(
-        {space.at(static_cast<std::int32_t>(column), static_cast<std::int32_t>(row)), stretch});
-  }
-  return path;
 }
 
 std::string source_of(const SuggestZonesOptions& options) {
@@ -198,7 +96,7 @@ ZonePlan split_by_bytes(const SuggestZonesOptions& options, const std::string& z
   return std::move(summary.plan);
 }
 
-void draw(const SuggestZonesOptions& options, const Ground& ground, const ZoneFile& file) {
+void draw(const SuggestZonesOptions& options, const SuggestGround& ground, const ZoneFile& file) {
   ZonesOnMap map{.file = options.out,
                  .zones = &file,
                  .places = ground.places,
@@ -248,9 +146,9 @@ ordered_json portals_json(const ZonePlan& plan) {
 
 void suggest_zones(const SuggestZonesOptions& options, std::ostream& text, ordered_json& json) {
   const Rule rule = rule_of(options.method).value();
-  const Ground ground = read_ground(options);
+  const SuggestGround ground = read_ground(options.source, options.grid);
   const suggest::GridPlace place = place_of(ground);
-  FreeSpace space = free_space_of(ground.drawing.image);
+  suggest::FreeSpace space = free_space_of(ground.drawing.image);
   suggest::Options how;
   how.door_ratio = options.door_ratio;
   how.min_area_m2 = options.min_area_m2;
@@ -259,7 +157,9 @@ void suggest_zones(const SuggestZonesOptions& options, std::ostream& text, order
   if (rule.name == "grid") how.method = suggest::Method::kGrid;
   if (rule.name == "path" || rule.name == "count") {
     how.method = suggest::Method::kPath;
-    how.path = path_of(ground, space, place, rule);
+    how.path =
+        path_of(ground, space, place,
+                {rule.name == "path" ? PathRule::kMetres : PathRule::kSignatures, rule.size});
   }
   const std::string source = source_of(options);
   suggest::Suggestion found;
