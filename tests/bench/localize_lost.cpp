@@ -7,11 +7,13 @@
 // start), cut=1 (zones that have a signature in view of one of the start's views are taken out of
 // the map: nothing may be found), list=1 (a line for each start), json=FILE (the figures, too),
 // cache=FILE (keeps what was matched, for the next run with the same map and mission), and the
-// rule's least_distinct=, least_explained=, least_support=, least_views=, two_views_support=,
-// most_rival=, against_costs=, chance=, should_see=.
+// rule's least_distinct=, least_explained=, least_support=, most_rival=, against_costs=, chance=,
+// should_see=; views=MAP (the signatures of another map of the building, or of the same with cut=1,
+// are seen instead of the mission's images: a drive through every zone).
 //
-// Prints the share of starts found within 5, 10 and `most` views, wrong ones (over 0.5 m or 10
-// degrees off the truth), and thread-CPU time of a view against the whole map.
+// Prints the share of starts found within 5, 10 and `most` views, the same of those starts within
+// which the robot moved or turned as the rule demands, wrong ones (over 0.5 m or 10 degrees off the
+// truth), and thread-CPU time of a view against the whole map.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,6 +23,7 @@
 #include <fstream>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <string>
@@ -35,6 +38,7 @@
 #include "runtime/localize/lost/lost_search.hpp"
 #include "runtime/localize/query/candidates.hpp"
 #include "runtime/localize/query/stored_map.hpp"
+#include "runtime/localize/solve/sighting.hpp"
 #include "runtime/odometry/se2.hpp"
 #include "runtime/odometry/wheel_odometry.hpp"
 #include "runtime/run/inputs/run_files.hpp"
@@ -138,6 +142,43 @@ std::vector<Pose2> by_wheels(const std::string& log_file, const std::string& con
   return out;
 }
 
+// The signature's features as this camera would have them of its image.
+ImageFeatures view_of(const MapFeatures& map, const CameraModel& camera) {
+  ImageFeatures out;
+  out.width = camera.width;
+  out.height = camera.height;
+  out.descriptor_bytes = map.descriptor_bytes;
+  std::vector<std::size_t> order(map.points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return map.points[a].x_px < map.points[b].x_px;
+  });
+  const auto scale = static_cast<float>(map.fx_px > 0 ? camera.fx / map.fx_px : 1);
+  for (const std::size_t row : order) {
+    out.seen_px.emplace_back(map.points[row].x_px * scale, map.points[row].y_px * scale);
+    out.px.push_back(out.seen_px.back());
+    const auto from =
+        map.descriptors.begin() + static_cast<std::ptrdiff_t>(row * map.descriptor_bytes);
+    out.descriptors.insert(out.descriptors.end(), from, from + map.descriptor_bytes);
+  }
+  return out;
+}
+
+// Views from `start` on after which two of them are as far apart as the rule demands; 0: never.
+std::size_t moves_after(const std::vector<LostView>& views, std::size_t start, std::size_t end,
+                        const LostRule& rule) {
+  for (std::size_t i = start; i < end; ++i) {
+    for (std::size_t k = start; k < i; ++k) {
+      const Pose2 step = between(views[k].T_wheels_base, views[i].T_wheels_base);
+      if (std::hypot(step.x_m, step.y_m) >= rule.moved_m ||
+          std::abs(step.yaw_rad) >= rule.turned_rad) {
+        return i - start + 1;
+      }
+    }
+  }
+  return 0;
+}
+
 struct Zone {
   std::vector<MapFeatures> features;
   std::vector<const MapFeatures*> list;
@@ -148,7 +189,8 @@ struct Zone {
 int main(int argc, char** argv) {
   if (argc < 4) stop("usage: localize_lost MAP MISSION CONFIG [OPTION=VALUE...]");
   std::map<std::string, std::string> options{{"most", "20"}, {"every", "1"}, {"cut", "0"},
-                                             {"list", "0"},  {"json", ""},   {"cache", ""}};
+                                             {"list", "0"},  {"json", ""},   {"cache", ""},
+                                             {"views", ""}};
   LostRule rule;
   for (int i = 4; i < argc; ++i) {
     const std::string word = argv[i];
@@ -162,10 +204,6 @@ int main(int argc, char** argv) {
       rule.least_explained = value;
     else if (key == "least_support")
       rule.least_support = value;
-    else if (key == "least_views")
-      rule.least_views = static_cast<std::size_t>(value);
-    else if (key == "two_views_support")
-      rule.two_views_support = value;
     else if (key == "most_rival")
       rule.most_rival = value;
     else if (key == "against_costs")
@@ -206,17 +244,38 @@ int main(int argc, char** argv) {
 
   std::vector<LostView> views;
   std::vector<std::optional<Pose2>> true_poses;
+  if (!options["views"].empty()) {
+    // The other map's signatures, seen as a camera's images: a drive through all of its zones.
+    const auto other = open_stored_map(options["views"]);
+    if (!other) stop(other.error().message);
+    std::vector<MapFeatures> signatures;
+    for (ZoneId zone = 0; zone < other->catalog.zones.size(); ++zone) {
+      auto some = read_zone_features(*other, zone);
+      if (!some) stop(some.error().message);
+      for (MapFeatures& one : *some) signatures.push_back(std::move(one));
+    }
+    std::sort(signatures.begin(), signatures.end(),
+              [](const MapFeatures& a, const MapFeatures& b) { return a.id < b.id; });
+    for (const MapFeatures& one : signatures) {
+      true_poses.emplace_back(flatten(one.T_map_base));
+      views.push_back({views.size() + 1, static_cast<std::int64_t>(views.size()) * 1'000'000'000,
+                       *true_poses.back(), view_of(one, *camera)});
+    }
+  } else {
+    for (std::size_t i = 0; i < images->size(); ++i) {
+      const auto image = read_image((*images)[i].file);
+      if (!image) stop(image.error().message);
+      auto features = localizer.detect(*image);
+      if (!features) stop((*images)[i].file + ": wrong size");
+      views.push_back({i + 1, (*images)[i].stamp_ns, wheels[i], std::move(*features)});
+      true_poses.push_back(truth->at((*images)[i].stamp_ns));
+    }
+  }
   std::vector<std::set<ZoneId>> in_view;
-  for (std::size_t i = 0; i < images->size(); ++i) {
-    const auto image = read_image((*images)[i].file);
-    if (!image) stop(image.error().message);
-    auto features = localizer.detect(*image);
-    if (!features) stop((*images)[i].file + ": wrong size");
-    views.push_back({i + 1, (*images)[i].stamp_ns, wheels[i], std::move(*features)});
-    true_poses.push_back(truth->at((*images)[i].stamp_ns));
+  for (const auto& true_pose : true_poses) {
     auto& here = in_view.emplace_back();
-    if (!true_poses.back()) continue;
-    const QueryPrior prior{*true_poses.back(), {0.01, 0, 0, 0.01, 0, 0.001}};
+    if (!true_pose) continue;
+    const QueryPrior prior{*true_pose, {0.01, 0, 0, 0.01, 0, 0.001}};
     for (const Candidate& one : choose_candidates(whole, *camera, prior, 12).reach) {
       here.insert(one.map->zone);
     }
@@ -225,7 +284,7 @@ int main(int argc, char** argv) {
   const auto most = static_cast<std::size_t>(number("most"));
   std::size_t starts = 0, wrong = 0;
   double most_wrong_support = 0;
-  std::vector<std::size_t> found_after;
+  std::vector<std::size_t> found_after, moved_after;
   for (std::size_t start = 0; start < views.size();
        start += static_cast<std::size_t>(number("every"))) {
     const std::size_t end = std::min(views.size(), start + most);
@@ -245,6 +304,8 @@ int main(int argc, char** argv) {
       if (place && search.found(*place)) after = i - start + 1;
     }
     ++starts;
+    if (const std::size_t moved = moves_after(views, start, end, rule))
+      moved_after.push_back(moved);
     double off_m = -1, off_deg = -1;
     bool is_wrong = false;
     if (place) {
@@ -282,27 +343,36 @@ int main(int argc, char** argv) {
     if (!options["cache"].empty() && start % 20 == 0) matcher.save(options["cache"]);
   }
   if (!options["cache"].empty()) matcher.save(options["cache"]);
+  const auto at_most = [](const std::vector<std::size_t>& numbers, std::size_t limit) {
+    return static_cast<double>(
+        std::count_if(numbers.begin(), numbers.end(), [&](std::size_t n) { return n <= limit; }));
+  };
   const auto within = [&](std::size_t count) {
-    return static_cast<double>(std::count_if(found_after.begin(), found_after.end(),
-                                             [&](std::size_t n) { return n <= count; })) /
-           static_cast<double>(starts);
+    return at_most(found_after, count) / static_cast<double>(starts);
+  };
+  const auto of_moved = [&](std::size_t count) {
+    return at_most(found_after, count) / std::max(1.0, at_most(moved_after, count));
   };
   const auto mean_ms = [](std::int64_t ns, std::size_t count) {
     return count == 0 ? 0 : static_cast<double>(ns) / 1e6 / static_cast<double>(count);
   };
   std::printf(
-      "%-20s%s starts %zu found within 5 %.3f 10 %.3f %zu %.3f wrong %zu, most support of a wrong "
+      "%-20s%s starts %zu found within 5 %.3f 10 %.3f %zu %.3f, of those that moved %.3f %.3f "
+      "%.3f, "
+      "wrong %zu, most support of a wrong "
       "place %.0f  ms of a view and a zone "
       "%.2f, of a second look %.2f (%zu, %zu)\n",
       mission.substr(mission.rfind('/') + 1).c_str(), number("cut") != 0 ? " cut" : "", starts,
-      within(5), within(10), most, within(most), wrong, most_wrong_support,
-      mean_ms(matcher.guess_ns, matcher.guesses), mean_ms(matcher.check_ns, matcher.checks),
-      matcher.guesses, matcher.checks);
+      within(5), within(10), most, within(most), of_moved(5), of_moved(10), of_moved(most), wrong,
+      most_wrong_support, mean_ms(matcher.guess_ns, matcher.guesses),
+      mean_ms(matcher.check_ns, matcher.checks), matcher.guesses, matcher.checks);
   if (!options["json"].empty()) {
     std::ofstream json(options["json"]);
     json << "{\"starts\": " << starts << ", \"found\": {\"5\": " << within(5)
          << ", \"10\": " << within(10) << ", \"" << most << "\": " << within(most)
-         << "}, \"confirmed\": " << found_after.size() << ", \"wrong\": " << wrong << "}\n";
+         << "}, \"found_of_moved\": {\"5\": " << of_moved(5) << ", \"10\": " << of_moved(10)
+         << ", \"" << most << "\": " << of_moved(most) << "}, \"confirmed\": " << found_after.size()
+         << ", \"wrong\": " << wrong << "}\n";
     if (!json.flush()) stop(options["json"] + ": cannot be written");
   }
   return 0;

@@ -149,7 +149,7 @@ LostSearch::Cluster LostSearch::around(const Seen& centre, bool all) const {
     const Pose2 here = compose(centre.T_map_wheels, views_[i].T_wheels_base);
     const bool against = std::any_of(checked_.begin(), checked_.end(), [&](const Checked& checked) {
       return checked.view == views_[i].number && !elsewhere(checked.pose, here) &&
-             speaks_against(checked.distinct, checked.visible, rule_.should_see,
+             speaks_against(checked.distinct, checked.expected, rule_.should_see,
                             rule_.least_explained);
     });
     place.against += against ? 1 : 0;
@@ -209,8 +209,8 @@ void LostSearch::look_again(ZoneId zone, std::span<const MapFeatures* const> map
       const QueryPrior prior{
           there, {sigma_m * sigma_m, 0, 0, sigma_m * sigma_m, 0, sigma_rad * sigma_rad}};
       const auto sight = matcher_.check(views_[i], zone, map, prior);
-      checked_.push_back(
-          {views_[i].number, zone, there, sight ? sight->visible : 0, sight ? sight->distinct : 0});
+      checked_.push_back({views_[i].number, zone, there, sight ? sight->expected : 0,
+                          sight ? sight->distinct : 0});
       if (sight && sight->accepted) {
         seen_.push_back({i, zone, *sight, compose(sight->pose, inverse(views_[i].T_wheels_base))});
       }
@@ -227,11 +227,9 @@ std::optional<LostPlace> LostSearch::leading() const {
 }
 
 bool LostSearch::found(const LostPlace& place) const noexcept {
-  const bool enough = place.views.size() >= rule_.least_views
-                          ? place.support >= rule_.least_support
-                          : place.views.size() == 2 && place.moved_m >= rule_.moved_m &&
-                                place.support >= rule_.two_views_support;
-  return enough && (place.moved_m >= rule_.moved_m || place.turned_rad >= rule_.turned_rad) &&
+  const bool moved = place.moved_m >= rule_.moved_m ||
+                     (place.views.size() > 2 && place.turned_rad >= rule_.turned_rad);
+  return moved && place.support >= rule_.least_support &&
          place.rival <= rule_.most_rival * place.evidence;
 }
 

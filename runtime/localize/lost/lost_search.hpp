@@ -18,16 +18,14 @@ namespace zonepack::localize {
 struct LostRule {
   int least_distinct = 15;                   // of a view that is for a place
   double least_explained = kLeastExplained;  // distinct / visible, of the same
-  double chance = .08;  // of the features near projected points: those that agree anywhere, at most
+  double chance = .12;  // of the features near projected points: those that agree anywhere, at most
   int should_see = kShouldSee;  // speaks_against()
   double against_costs = 8;
-  double least_support = 42;
-  std::size_t least_views = 3;
-  // Two views are enough when they show this much, from places that are moved_m apart: a robot that
-  // only turns may see the same pattern of a floor twice, in a wrong place.
-  double two_views_support = 60;
-  double moved_m = 0.3, turned_rad = 0.26;  // between two of the views, one of these
-  double most_rival = 0.6;                  // of what is for the place
+  double least_support = 36;
+  // Between two of the views, one of these. Of two views alone the first: a robot that only turns
+  // may see the same pattern of a floor twice, in a wrong place.
+  double moved_m = 0.3, turned_rad = 0.26;
+  double most_rival = 0.6;  // of what is for the place
 };
 
 // A place that a search believes or leans to.
@@ -92,7 +90,7 @@ class LostSearch {
     std::uint64_t view = 0;
     ZoneId zone = kNoZone;
     Pose2 pose;
-    int visible = 0, distinct = 0;
+    int expected = 0, distinct = 0;
   };
   struct Cluster {
     LostPlace place;

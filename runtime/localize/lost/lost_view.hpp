@@ -24,20 +24,22 @@ struct Sight {
   Covariance2 covariance;
   int distinct = 0;       // inliers
   int visible = 0;        // features of the image with a projected point of the map within 8 px
+  int expected = 0;       // of them, those that should agree: QueryResult::expected
   bool accepted = false;  // would be a fix if this were the robot's known place
 };
 
-// An image speaks against a place when this many of its features are near projected points of the
-// map there, and a smaller part of them agrees.
+// An image speaks against a place when this many of its features should agree with the map there,
+// and fewer do than this part of them.
 inline constexpr int kShouldSee = 60;
 inline constexpr double kLeastExplained = .12;
-inline bool speaks_against(int distinct, int visible, int should_see = kShouldSee,
+inline bool speaks_against(int distinct, int expected, int should_see = kShouldSee,
                            double least_explained = kLeastExplained) noexcept {
-  return visible >= should_see && distinct < least_explained * visible;
+  return expected >= should_see && distinct < least_explained * expected;
 }
 
 inline Sight sight_of(const QueryResult& result) {
-  return {result.pose, result.covariance, result.distinct, result.visible, result.accepted};
+  return {result.pose,    result.covariance, result.distinct,
+          result.visible, result.expected,   result.accepted};
 }
 
 }  // namespace zonepack::localize

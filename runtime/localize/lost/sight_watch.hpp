@@ -21,6 +21,8 @@ class SightWatch {
       restart();
       return false;
     }
+    // All that is near points of the map, however they were seen: several images in a row make up
+    // for that, and a wrong pose is noticed in half the time.
     const bool against = speaks_against(result.distinct, result.visible);
     const bool missed =
         own_zone && (result.signatures > 0 || result.reason == Reason::kNoSignature);

@@ -19,6 +19,7 @@ constexpr double kSecondScale_px = 4, kSecondScaleEnd_px = 2;  // of the loss
 constexpr double kSecondPassDistance = 80;                     // of 256 bits
 constexpr std::size_t kSecondPassSignatures = 60;
 constexpr double kVisible_px = 8;
+constexpr double kMuchAsNow = 0.5;  // view_change()
 constexpr double kDistinct_px = 4;
 // What the second look recognises counts as evidence, less what chance gives: 5 of 100 places.
 // Chosen on the images of kChance (locate_near.cpp).
@@ -154,6 +155,13 @@ void Localizer::State::polish(const ImageFeatures& image, const Candidates& cand
                        c.yy * worse + kMapSigma_m * kMapSigma_m,
                        c.y_yaw * worse,
                        c.yaw_yaw * worse + kMapSigma_rad * kMapSigma_rad};
+}
+
+// Points behind a wall, or that were seen from the other side, are no reason to expect anything.
+int Localizer::State::count_expected(const ImageFeatures& image, const Candidates& candidates,
+                                     const Eigen::Isometry3d& T_map_base) const {
+  return count_visible(image, of_second_pass(candidates), camera, T_map_base, kVisible_px * scale,
+                       kMuchAsNow);
 }
 
 void Localizer::State::weigh_second_look(const ImageFeatures& image, PlaceDescriber& describer,

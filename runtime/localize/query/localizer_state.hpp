@@ -53,6 +53,8 @@ struct Localizer::State {
   void count(const ImageFeatures& image, const Candidates& candidates,
              std::vector<Sighting>& sightings, const Eigen::Isometry3d& T_map_base,
              QueryResult& result) const;
+  int count_expected(const ImageFeatures& image, const Candidates& candidates,
+                     const Eigen::Isometry3d& T_map_base) const;
   void weigh_second_look(const ImageFeatures& image, PlaceDescriber& describer,
                          const Candidates& candidates, QueryResult& result);
   void judge(const Candidates& candidates, const QueryPrior& prior, QueryResult& result) const;

@@ -134,6 +134,9 @@ void Localizer::State::solve(const ImageFeatures& image, PlaceDescriber* describ
     weigh_second_look(image, *describer, candidates, result);
   }
   judge(candidates, prior, result);
+  if (result.found && !result.accepted) {
+    result.expected = count_expected(image, candidates, result.T_map_base);
+  }
   clock.end(Stage::kRefine);
 }
 

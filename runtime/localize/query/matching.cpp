@@ -219,13 +219,20 @@ std::vector<Sighting> match_everywhere(const ImageFeatures& image, const MapFeat
 }
 
 int count_visible(const ImageFeatures& image, std::span<const Candidate> candidates,
-                  const CameraModel& camera, const Eigen::Isometry3d& T_map_base,
-                  double radius_px) {
+                  const CameraModel& camera, const Eigen::Isometry3d& T_map_base, double radius_px,
+                  std::optional<double> most_change) {
   const FeatureGrid grid(image);
+  const Eigen::Vector3d eye = T_map_base * camera.T_base_camera.translation();
   std::vector<bool> seen(image.size());
   const auto radius = static_cast<float>(radius_px);
   for_each_seen(candidates, camera, T_map_base, radius,
-                [&](std::uint32_t, std::uint32_t, const Eigen::Vector2f& at) {
+                [&](std::uint32_t s, std::uint32_t row, const Eigen::Vector2f& at) {
+                  if (most_change) {
+                    const MapFeatures& map = *candidates[s].map;
+                    const Eigen::Vector3d p_map =
+                        map.T_map_base * point_of(map.points[row]).cast<double>();
+                    if (!(view_change(map, p_map, eye) <= *most_change)) return;
+                  }
                   grid.for_each_near(at.x(), at.y(), radius,
                                      [&](std::uint32_t feature) { seen[feature] = true; });
                 });

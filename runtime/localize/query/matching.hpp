@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,8 +46,10 @@ std::vector<Sighting> match_projected(const ImageFeatures& image,
 std::vector<Sighting> match_everywhere(const ImageFeatures& image, const MapFeatures& map,
                                        const MatchOptions& options);
 
-// Features of the image that have a projected point of a candidate within `radius_px`.
+// Features of the image that have a projected point of a candidate within `radius_px`; with
+// `most_change`, a point whose view_change() is at most that.
 int count_visible(const ImageFeatures& image, std::span<const Candidate> candidates,
-                  const CameraModel& camera, const Eigen::Isometry3d& T_map_base, double radius_px);
+                  const CameraModel& camera, const Eigen::Isometry3d& T_map_base, double radius_px,
+                  std::optional<double> most_change = {});
 
 }  // namespace zonepack::localize

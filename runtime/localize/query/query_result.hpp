@@ -75,6 +75,7 @@ struct QueryResult {
   int recognised = 0;  // of them, and counted in `evidence`
   int cells = 0;       // of the 4x4 of the image that hold an inlier
   int visible = 0;     // features of the image with a projected map point within 8 px
+  int expected = 0;    // of them, those with one that was seen much as now; 0 when accepted
   int signatures = 0;  // candidates that were looked at
   SignatureId nearest = 0;  // signature nearest to the prior, when there is one
   ZoneId nearest_zone = kNoZone;

@@ -44,7 +44,7 @@ inline LostView made_view(std::uint64_t number, double x_m, double yaw_rad = 0) 
 }
 
 inline Sight made_sight(Pose2 pose, int distinct, int visible, bool accepted = true) {
-  return {pose, {0.0004, 0, 0, 0.0004, 0, 0.0001}, distinct, visible, accepted};
+  return {pose, {0.0004, 0, 0, 0.0004, 0, 0.0001}, distinct, visible, visible, accepted};
 }
 
 }  // namespace zonepack::localize

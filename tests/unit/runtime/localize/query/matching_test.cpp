@@ -131,5 +131,20 @@ TEST_F(MatchingTest, CountsFeaturesThatThePoseCouldExplain) {
   EXPECT_EQ(count_visible(image_, all, camera_, Eigen::Isometry3d::Identity(), 8), 2);
 }
 
+// Both points were seen from where the camera is; then from 3 m behind it, from the other side.
+TEST_F(MatchingTest, ExpectsOnlyPointsThatWereSeenMuchAsNow) {
+  add_point(0, 0);
+  add_point(1, 0);
+  add_feature(319.5 - 192.5 + 5, 99);
+  add_feature(319.5, 0);
+  const Candidate all[] = {{&map_, 1}};
+  const auto expected = [&] {
+    return count_visible(image_, all, camera_, Eigen::Isometry3d::Identity(), 8, 0.5);
+  };
+  EXPECT_EQ(expected(), 2);
+  map_.T_base_camera.translation() = camera_.T_base_camera.translation() + Eigen::Vector3d(4, 0, 0);
+  EXPECT_EQ(expected(), 0);
+}
+
 }  // namespace
 }  // namespace zonepack::localize
