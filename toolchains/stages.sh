@@ -140,7 +140,7 @@ do_test() {  # [--all]
 what_else() {
   cat <<EOT
 There is more than these tests:
-   toolchains/run test --all       every stage, 80 minutes: ${stages[*]}
+   toolchains/run test --all       every stage, 70 minutes: ${stages[*]}
    toolchains/run stage NAME       one of them
    toolchains/run prove            every claim of tests/README.md, an hour
    toolchains/run cross arm64      packages for a robot, and its unit tests under qemu-user; or armhf

@@ -16,7 +16,11 @@ namespace {
 constexpr double kInlier_px = 3;
 constexpr double kSecondPass_px = 8, kSecondPassEnd_px = 6;
 constexpr double kSecondScale_px = 4, kSecondScaleEnd_px = 2;  // of the loss
-constexpr double kSecondPassDistance = 80;                     // of 256 bits
+// Where matches abound, the loss ends sharper, and what disagrees a little has less of a say; few
+// matches cannot spare it.
+constexpr std::size_t kManyMatches = 100;
+constexpr double kSharpScaleEnd_px = 1.75;
+constexpr double kSecondPassDistance = 80;  // of 256 bits
 constexpr std::size_t kSecondPassSignatures = 60;
 constexpr double kVisible_px = 8;
 constexpr double kMuchAsNow = 0.5;  // view_change()
@@ -133,8 +137,9 @@ void Localizer::State::polish(const ImageFeatures& image, const Candidates& cand
   for (const double radius : {kSecondPass_px, kSecondPassEnd_px}) {
     sightings = match_projected(image, all, camera, refined.T_map_base, radius * scale, second);
     if (sightings.size() < 4) break;
+    const bool sharp = radius == kSecondPassEnd_px && sightings.size() >= kManyMatches;
     refined = refine_on_floor(sightings, candidates, refined.T_map_base, kSecondScale_px,
-                              kSecondScaleEnd_px);
+                              sharp ? kSharpScaleEnd_px : kSecondScaleEnd_px);
     if (!refined.valid) break;
   }
   count(image, candidates, sightings, refined.T_map_base, result);
