@@ -8,6 +8,7 @@
 #include "runtime/localize/query/localizer_state.hpp"
 #include "runtime/localize/query/place_search.hpp"
 #include "runtime/localize/solve/planar_ransac.hpp"
+#include "runtime/odometry/poses_apart.hpp"
 #include "runtime/odometry/se2.hpp"
 
 namespace zonepack::localize {
@@ -18,6 +19,11 @@ constexpr std::size_t kFirstPassSignatures = 12;
 constexpr std::size_t kStarts = 3;
 constexpr double kStartShare = 0.85;
 constexpr double kPlenty = 3;  // times the evidence needed: no other start is looked at
+// Before a pose is believed, poses elsewhere are asked whether they explain the image about as
+// well: those that came next in RANSAC.
+constexpr std::size_t kMostRivals = 6;
+constexpr double kRivalStartShare = 0.5, kRivalEvidence = 0.8;
+constexpr double kRivalApart_m = 0.25, kRivalApart_rad = 2 * std::numbers::pi / 180;
 constexpr double kFirstScale_px = 8, kFirstScaleEnd_px = 3;  // of the loss
 constexpr double kMostTilt_rad = 6 * std::numbers::pi / 180;
 constexpr double kMostLift_m = 0.12;
@@ -37,6 +43,12 @@ double off_prior2(const QueryPrior& prior, const QueryResult& result) {
   around.yy += 0.01;
   around.yaw_yaw += 1e-3;
   return mahalanobis2({prior.T_map_base, around}, {result.pose, result.covariance});
+}
+
+bool rivals(const QueryResult& other, const QueryResult& best) {
+  return other.found && other.evidence >= kLeastEvidence &&
+         other.evidence > kRivalEvidence * best.evidence &&
+         !are_within(other.pose, best.pose, kRivalApart_m, kRivalApart_rad);
 }
 
 std::size_t count_features(const std::vector<Sighting>& sightings) {
@@ -107,7 +119,7 @@ void Localizer::State::solve(const ImageFeatures& image, PlaceDescriber* describ
   RansacOptions ransac;
   ransac.seed = options.seed;
   ransac.threshold_px *= scale;
-  ransac.most_poses = kStarts;
+  ransac.most_poses = kMostRivals;
   const PoseGate gate{prior.T_map_base, 0.3 + 3.5 * position_sigma_m(prior.covariance),
                       0.05 + 3.5 * std::sqrt(std::max(0.0, prior.covariance.yaw_yaw))};
   const auto planar = find_planar(sightings, camera, candidates.floor_z_m, gate, ransac);
@@ -116,24 +128,38 @@ void Localizer::State::solve(const ImageFeatures& image, PlaceDescriber* describ
     result.reason = Reason::kFewInliers;
     return;
   }
-  std::optional<QueryResult> best;
-  for (const PlanarPose& start : planar) {
-    if (start.score < kStartShare * planar.front().score) break;
-    if (best && best->evidence > kPlenty * kLeastEvidence) break;
+  const QueryResult before = result;
+  const auto from = [&](const PlanarPose& start) {
     const Eigen::Isometry3d lifted = lift(start.pose, candidates.floor_z_m);
     const Refined first =
         refine_on_floor(sightings, candidates, lifted, kFirstScale_px, kFirstScaleEnd_px);
-    QueryResult here = result;
+    QueryResult here = before;
     polish(image, candidates, first.valid ? first.T_map_base : lifted, here);
     here.evidence -= kChance * here.visible + kOffPrior * off_prior2(prior, here);
-    if (!best || here.evidence > best->evidence) best = std::move(here);
+    return here;
+  };
+  std::vector<QueryResult> tried;
+  std::size_t best = 0;
+  for (const PlanarPose& start : planar) {
+    if (tried.size() == kStarts || start.score < kStartShare * planar.front().score) break;
+    if (!tried.empty() && tried[best].evidence > kPlenty * kLeastEvidence) break;
+    tried.push_back(from(start));
+    if (tried.back().evidence > tried[best].evidence) best = tried.size() - 1;
   }
-  result = std::move(*best);
+  result = tried[best];
   if (describer != nullptr && result.found && result.distinct >= options.needed &&
       result.evidence < kBeyondDoubt) {
     weigh_second_look(image, *describer, candidates, result);
   }
   judge(candidates, prior, result);
+  const bool beyond_rivals = result.evidence > kPlenty * kLeastEvidence;
+  for (std::size_t i = 0; i < planar.size() && result.accepted && !beyond_rivals; ++i) {
+    if (planar[i].score < kRivalStartShare * planar.front().score) break;
+    if (i == tried.size()) tried.push_back(from(planar[i]));
+    if (!rivals(tried[i], result)) continue;
+    result.accepted = false;
+    result.reason = Reason::kRival;
+  }
   if (result.found && !result.accepted) {
     result.expected = count_expected(image, candidates, result.T_map_base);
   }

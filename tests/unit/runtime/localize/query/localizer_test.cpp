@@ -124,6 +124,39 @@ TEST_F(LocalizerTest, NeedsMoreEvidenceFarFromThePrior) {
   EXPECT_NEAR(here.evidence - there.evidence, 1.25, 0.05);
 }
 
+// A signature with about so many of its points.
+MapFeatures thinned(const MapFeatures& map, std::size_t points) {
+  MapFeatures out = map;
+  out.points.clear();
+  out.descriptors.clear();
+  const std::size_t step = map.points.size() / points;
+  for (std::size_t row = 0; row < map.points.size(); row += step) {
+    out.points.push_back(map.points[row]);
+    const auto from =
+        map.descriptors.begin() + static_cast<std::ptrdiff_t>(row * map.descriptor_bytes);
+    out.descriptors.insert(out.descriptors.end(), from, from + map.descriptor_bytes);
+  }
+  return out;
+}
+
+// Ten points are enough, until the same stand 0.4 m farther on, too: a floor that repeats.
+TEST_F(LocalizerTest, BelievesNoPoseWhileAnotherNearbyExplainsAsMuch) {
+  QueryPrior between = near_;
+  between.T_map_base = {kPlace.x_m + 0.2, kPlace.y_m, kPlace.yaw_rad};
+  const MapFeatures once = thinned(map_, 10);
+  MapFeatures again = once;
+  again.id = 8;
+  again.T_map_base.translation().x() += 0.4;
+  const MapFeatures* const one[] = {&once};
+  const MapFeatures* const both[] = {&once, &again};
+  const QueryResult sure = localizer_.query(view_, one, between);
+  ASSERT_TRUE(sure.accepted) << to_string(sure.reason);
+  EXPECT_LT(sure.evidence, 12);
+  const QueryResult result = localizer_.query(view_, both, between);
+  EXPECT_FALSE(result.accepted);
+  EXPECT_EQ(result.reason, Reason::kRival);
+}
+
 // Maps of the other detectors.
 class OtherDetectors : public LocalizerTest, public testing::WithParamInterface<Detector> {
  protected:
