@@ -90,7 +90,7 @@ std::string query_reason(const QueryResult& result, const QueryAsked& asked) {
              rounded(100 * std::sqrt(std::max(result.covariance.xx, result.covariance.yy)), 0) +
              " cm (one standard deviation)";
     case Reason::kRival:
-      return inliers + " matches agree, but nearly as many on another place";
+      return inliers + " matches agree, but nearly as many on another pose";
   }
   return "";
 }

@@ -32,7 +32,7 @@ enum class Reason : std::uint8_t {
   kFarFromPrior,  // they agree on a pose that the prior excludes
   kNotLevel,      // they agree on a pose that is tilted or off the floor
   kUnsure,        // the pose's covariance is too wide to be of use
-  kRival,         // another place explains the image about as well
+  kRival,         // another pose, of another place or nearby, explains the image about as well
 };
 inline constexpr std::size_t kReasons = 13;
 // As in the JSON: "accepted", "wrong_size", "no_features" …
