@@ -20,6 +20,20 @@ class LostSearchTest : public testing::Test {
     const auto place = search.leading();
     return place && search.found(*place);
   }
+  // Three views that show the place, and two in which 5 features agree of 100 near points of the
+  // map, where so many of the 100 were expected to.
+  void three_for_and_two_with(int expected) {
+    at(1, 0, 20);
+    at(2, 0.2, 20);
+    at(3, 0.4, 20);
+    for (std::uint64_t i = 4; i <= 5; ++i) {
+      const double x_m = 0.2 * static_cast<double>(i - 1);
+      search.add(made_view(i, x_m));
+      Sight sight = made_sight({10 + x_m, 5, 0}, 5, 100, false);
+      sight.expected = expected;
+      places.second[{i, 0}] = {sight};
+    }
+  }
   MadePlaces places;
   LostSearch search{places};
 };
@@ -89,34 +103,16 @@ TEST_F(LostSearchTest, WaitsWhileAnotherPlaceFitsNearlyAsWell) {
   EXPECT_NEAR(search.leading()->rival, 33, 1e-9);
 }
 
-// Two more views should see the place, have 100 features near its points and 5 of them agree: 8
-// each, 42 - 16 = 26.
+// Each of the two views that should see the place costs 8: 42 - 16 = 26.
 TEST_F(LostSearchTest, CountsViewsThatShouldSeeThePlaceAndDoNotAgainstIt) {
-  at(1, 0, 20);
-  at(2, 0.2, 20);
-  at(3, 0.4, 20);
-  for (std::uint64_t i = 4; i <= 5; ++i) {
-    const double x_m = 0.2 * static_cast<double>(i - 1);
-    search.add(made_view(i, x_m));
-    places.second[{i, 0}] = {made_sight({10 + x_m, 5, 0}, 5, 100, false)};
-  }
+  three_for_and_two_with(100);
   EXPECT_FALSE(found());
   EXPECT_EQ(search.leading()->against, 2);
   EXPECT_NEAR(search.leading()->support, 26, 1e-9);
 }
 
-// The same two, but only 20 of the 100 features are near points that were seen much as now.
 TEST_F(LostSearchTest, CountsNoViewAgainstAPlaceThatTheMapShowsFromElsewhere) {
-  at(1, 0, 20);
-  at(2, 0.2, 20);
-  at(3, 0.4, 20);
-  for (std::uint64_t i = 4; i <= 5; ++i) {
-    const double x_m = 0.2 * static_cast<double>(i - 1);
-    search.add(made_view(i, x_m));
-    Sight sight = made_sight({10 + x_m, 5, 0}, 5, 100, false);
-    sight.expected = 20;
-    places.second[{i, 0}] = {sight};
-  }
+  three_for_and_two_with(20);
   EXPECT_TRUE(found());
   EXPECT_EQ(search.leading()->against, 0);
 }

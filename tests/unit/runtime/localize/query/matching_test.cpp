@@ -131,7 +131,7 @@ TEST_F(MatchingTest, CountsFeaturesThatThePoseCouldExplain) {
   EXPECT_EQ(count_visible(image_, all, camera_, Eigen::Isometry3d::Identity(), 8), 2);
 }
 
-// Both points were seen from where the camera is; then from 3 m behind it, from the other side.
+// Both points were seen from where the camera is; then from the other side, 2 m beyond them.
 TEST_F(MatchingTest, ExpectsOnlyPointsThatWereSeenMuchAsNow) {
   add_point(0, 0);
   add_point(1, 0);
